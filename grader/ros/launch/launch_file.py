@@ -448,7 +448,9 @@ class _PythonLaunchFile:
             "os.environ.__setitem__": _set_variable,
             "os.environ.setdefault": _set_variable,
             f"{_NAVIGATION}.LaunchConfigAsBool": _configuration,
-            **dict.fromkeys((f"{_NAVIGATION}.{name}" for name in _OF_NAVIGATION), _text_of_navigation),
+            **dict.fromkeys(
+                (f"{_NAVIGATION}.{name}" for name in _OF_NAVIGATION), _text_of_navigation
+            ),
             "xacro.process_file": self._xacro,
             "xacro.process": self._xacro,
             "xacro.parse": self._xacro,

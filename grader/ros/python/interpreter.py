@@ -106,14 +106,13 @@ def _reads_environment(node: ast.AST) -> bool:
 
 
 def _names_bound(body: Sequence[ast.stmt]) -> set[str] | None:
-    """Return the names that branches bind which do nothing else, but for variables of the
-    environment; None for others.
-    """
+    """Return the names that branches bind; None if they do more than set the environment, too."""
     names = set[str]()
     for statement in body:
         match statement:
-            case ast.Assign(targets=[target], value=value) | ast.AugAssign(
-                target=target, value=value
+            case (
+                ast.Assign(targets=[target], value=value)
+                | ast.AugAssign(target=target, value=value)
             ):
                 pass
             case ast.Pass():

@@ -67,6 +67,12 @@ class _OpenPaths(NamedTuple):
 
 
 _NO_PATH = _OpenPaths(reaches_end=False)
+_LEAVING: Mapping[type[ast.stmt], _OpenPaths] = {
+    ast.Return: _NO_PATH._replace(returns=True),
+    ast.Break: _NO_PATH._replace(breaks=True),
+    ast.Raise: _NO_PATH,
+    ast.Continue: _NO_PATH,
+}
 
 
 def _paths_without_state(body: Sequence[ast.stmt]) -> _OpenPaths:
@@ -87,26 +93,26 @@ def _paths_through(statement: ast.stmt) -> _OpenPaths:
     match statement:
         case ast.Expr(value=ast.Call(func=ast.Attribute(attr=name))) if name == _CANCELS:
             return _NO_PATH
-        case ast.Return():
-            return _NO_PATH._replace(returns=True)
-        case ast.Break():
-            return _NO_PATH._replace(breaks=True)
-        case ast.Raise() | ast.Continue():
-            return _NO_PATH
-        case ast.If(body=body, orelse=orelse):
-            return _paths_without_state(body).joined(_paths_without_state(orelse))
         case ast.While() | ast.For() | ast.AsyncFor():
             return _paths_of_loop(statement)
-        case ast.With(body=body) | ast.AsyncWith(body=body):
-            return _paths_without_state(body)
         case ast.Try() | ast.TryStar():
             return _paths_of_try(statement)
+    paths = _LEAVING.get(type(statement), _NO_PATH)
+    for branch in _branches_of(statement):
+        paths = paths.joined(_paths_without_state(branch))
+    return paths
+
+
+def _branches_of(statement: ast.stmt) -> list[list[ast.stmt]]:
+    """Return the blocks of a statement of which one runs; one without blocks does nothing."""
+    match statement:
+        case ast.If(body=body, orelse=orelse):
+            return [body, orelse]
+        case ast.With(body=body) | ast.AsyncWith(body=body):
+            return [body]
         case ast.Match(cases=cases):
-            paths = _OpenPaths()  # none of them may match
-            for case in cases:
-                paths = paths.joined(_paths_without_state(case.body))
-            return paths
-    return _OpenPaths()
+            return [[], *(case.body for case in cases)]  # none of them may match
+    return [] if type(statement) in _LEAVING else [[]]
 
 
 def _paths_of_loop(loop: ast.While | ast.For | ast.AsyncFor) -> _OpenPaths:
@@ -128,9 +134,7 @@ def _paths_of_try(statement: ast.Try | ast.TryStar) -> _OpenPaths:
     last = _paths_without_state(statement.finalbody)
     if not last.reaches_end:
         return last
-    return _OpenPaths(
-        paths.reaches_end, paths.breaks or last.breaks, paths.returns or last.returns
-    )
+    return _OpenPaths(paths.reaches_end, paths.breaks or last.breaks, paths.returns or last.returns)
 
 
 def _attributes_of(name: str, function: _Function) -> set[str] | None:

@@ -113,6 +113,7 @@ class GraphTransform(NamedTuple):
     location: Location
     is_static: bool = False
     is_certain: bool = True
+    needs: tuple[str, ...] = ()  # topics of joint states, of which it needs one
 
 
 class Unread(NamedTuple):

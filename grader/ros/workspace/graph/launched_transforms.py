@@ -46,7 +46,13 @@ def transforms_in(
     for edge in edges_in(workspace, number):
         if edge.source != "code" and edge.location not in not_started:
             yield GraphTransform(
-                edge.parent, edge.child, edge.by, edge.location, edge.is_static, edge.is_certain
+                edge.parent,
+                edge.child,
+                edge.by,
+                edge.location,
+                edge.is_static,
+                edge.is_certain,
+                edge.needs,
             )
     for node in _launched_nodes(launch, without):
         yield from _bridged_by_default(workspace, node)

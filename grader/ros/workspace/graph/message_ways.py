@@ -178,8 +178,9 @@ class _WaySearch:
             yield other, self._nodes[other].doubt
         if not self._is_certain:
             for other in self._in_process.get(node.process, ()):
+                label = self._nodes[other].label
                 if other != number:
-                    yield other, f"what {node.label} shares with {self._nodes[other].label} is not known"
+                    yield other, f"what {node.label} shares with {label} is not known"
             yield from self._possibly_next_to(node)
 
     def _possibly_next_to(self, node: GraphNode) -> Iterator[tuple[int, str]]:

@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Collection, Iterator
+from functools import cached_property
 
 from grader.base.source import Location, Source
 from grader.base.text import counted, cut, quoted
 from grader.ros.known.ros_machine import ros_machine
 from grader.ros.launch.launch_model import Launch
+from grader.ros.python.parse import Code, lines_of_docstrings, parse
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
@@ -32,29 +34,55 @@ _ENVIRONMENT = re.compile(
 _MAX_SHOWN = 60  # characters of a path
 
 
+class _TopicNames:
+    """The names of topics and services in a workspace, which may be like paths: /home/arm/done."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
+
+    def __contains__(self, path: str) -> bool:
+        """Return whether a text is one of the names, or the namespace of one."""
+        name = path.rstrip("/")
+        return any(f"{other}/".startswith(f"{name}/") for other in self._names)
+
+    @cached_property
+    def _names(self) -> set[str]:
+        names: set[str | None] = set()
+        for code in self._workspace.code.by_package.values():
+            for facts in code.nodes:
+                names.update(endpoint.name for endpoint in facts.endpoints)
+        for _, node in self._workspace.launches.nodes:
+            names.add(node.namespace)
+            for rule in node.remaps or ():
+                names.update(rule)
+        return {name for name in names if name is not None}
+
+
 def machine_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield paths in home folders and environment variables that a launch file needs.
 
-    A path in somebody's home folder is yielded once a file.
+    A path in somebody's home folder is yielded once a file. Names of topics and services are no
+    paths, nor is what comments and docstrings say.
 
     Those of a launch file at which it reads files are problems of this file, and not yielded.
     """
+    topics = _TopicNames(workspace)
     launches: dict[str, Launch] = {}
     for package, path, launch in workspace.launches.files:
         launches[package.path(path)] = launch
-        yield from _home_values(launch)
+        yield from _home_values(launch, topics)
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, _TEXTS):
             if source.path not in launches:
                 yield Compared("machine")
-                yield from _home_paths(source, ())
+                yield from _home_paths(source, (), topics)
         for source in workspace.texts.launch_sources(package):
             if source.path in launches:
-                yield from _home_paths(source, _said_paths(launches[source.path]))
+                yield from _home_paths(source, _said_paths(launches[source.path]), topics)
     yield from _variables(workspace)
 
 
-def _home_values(launch: Launch) -> Iterator[Mismatch]:
+def _home_values(launch: Launch, topics: _TopicNames) -> Iterator[Mismatch]:
     """Yield the first value of a parameter in a launch file that is a path in a home folder."""
     said = {reference.location for reference in launch.references}
     for node in launch.nodes:
@@ -62,6 +90,7 @@ def _home_values(launch: Launch) -> Iterator[Mismatch]:
             for value in given.values.values():
                 text = value.value if isinstance(value.value, str) else ""
                 is_home = _HOME.match(text) and not _PLACEHOLDERS.match(text)
+                is_home = is_home and text not in topics
                 if is_home and value.location.path == launch.source.path:
                     if value.location not in said:
                         shown = quoted(cut(text, _MAX_SHOWN))
@@ -79,7 +108,7 @@ def _said_paths(launch: Launch) -> list[str]:
     return said
 
 
-def _home_paths(source: Source, said: Collection[str]) -> Iterator[Mismatch]:
+def _home_paths(source: Source, said: Collection[str], topics: _TopicNames) -> Iterator[Mismatch]:
     """Yield that a file names paths in somebody's home folder, at the first of them.
 
     Those that are part of what is said otherwise do not count.
@@ -87,8 +116,13 @@ def _home_paths(source: Source, said: Collection[str]) -> Iterator[Mismatch]:
     paths = []
     for path in _HOME.finditer(source.text):
         is_said = _PLACEHOLDERS.match(path[1]) or any(path[1] in text for text in said)
-        if not is_said and not _is_in_comment(source.text, path.start()):
+        is_comment = _is_in_comment(source.text, path.start())
+        if not is_said and not is_comment and path[1] not in topics:
             paths.append(path)
+    if paths and source.path.endswith(".py"):
+        code = parse(source.text.encode("utf-8", "replace"), source.path)
+        lines = lines_of_docstrings(code) if isinstance(code, Code) else ()
+        paths = [path for path in paths if source.at(path.start()).line not in lines]
     if paths:
         message = f"the path {quoted(cut(paths[0][1], _MAX_SHOWN))} is of one machine"
         if len(paths) > 1:

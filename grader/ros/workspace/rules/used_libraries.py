@@ -45,7 +45,7 @@ def library_facts(workspace: Workspace) -> Iterator[Fact]:
                 continue
             seen.add(use.key)
             yield Compared("keys")
-            if names.isdisjoint({_library_name(use.key), _library_name(use.name)}):
+            if not _is_declared(use, declared, names):
                 yield from _undeclared(package, use, declared)
 
 
@@ -66,6 +66,20 @@ def _used_libraries(
             assert setup is not None
             key, at = words.libraries[required.name], setup.location(required.at)
             yield _LibraryUse(key, required.name, at, is_built=True)
+
+
+def _is_declared(use: _LibraryUse, declared: set[str], names: Collection[str]) -> bool:
+    """Return whether a library is declared: by a key of its own, or by those of its parts.
+
+    `names` are what the names of what is declared have in common with other names.
+    """
+    keys = {use.key, use.name, *rosdep_words().alike.get(use.key, ())}
+    if not declared.isdisjoint(keys) or not {_library_name(key) for key in keys}.isdisjoint(names):
+        return True
+    parts = tuple(f"{_library_name(key)}-" for key in keys)
+    return use.is_built and any(
+        name.startswith("lib") and _library_name(name).startswith(parts) for name in declared
+    )
 
 
 def _undeclared(
