@@ -15,6 +15,15 @@ from grader.ros.xml.parsing import Element, XmlFault, XmlFile, recover_xml
 _MAX_MISPLACED = 100  # dependencies in <export>
 
 
+class DeclaredDependency(NamedTuple):
+    """A dependency in package.xml, with its tag: exec_depend."""
+
+    name: str
+    tag: str
+    location: Location
+    is_conditional: bool
+
+
 class Manifest(NamedTuple):
     """The content of a package.xml.
 
@@ -34,6 +43,10 @@ class Manifest(NamedTuple):
     dependencies: frozenset[str] = frozenset()  # the packages that it depends on, in any way
     groups: frozenset[str] = frozenset()  # of packages, of which it is a member
     misplaced: Mapping[str, Location] = {}  # dependencies in <export>, which do not count
+    declared: tuple[DeclaredDependency, ...] = ()  # the dependencies, in their order
+    version: str = ""
+    has_build_type: bool = False
+    loose_texts: tuple[tuple[str, Location], ...] = ()  # between elements, with these
 
     @property
     def refusals(self) -> tuple[Problem, ...]:
@@ -90,15 +103,20 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
     exports = _exports(root)
     build_types = [element for element in exports if _is_used_build_type(element)]
     names: list[Element] = []
-    dependencies, groups = set[str](), set[str]()
+    groups = set[str]()
+    declared: list[DeclaredDependency] = []
+    loose: list[tuple[str, Location]] = []
     for element in root.iterchildren("*"):
+        if (element.tail or "").strip():
+            loose.append(((element.tail or "").strip(), file.location(element)))
         tag = tag_of(element)
         if tag == "name":
             names.append(element)
         elif tag == "member_of_group":
             groups.add(text_of(element))
         elif tag.endswith("depend"):
-            dependencies.add(text_of(element))
+            at, is_conditional = file.location(element), element.get("condition") is not None
+            declared.append(DeclaredDependency(text_of(element), tag, at, is_conditional))
     return Manifest(
         source,
         (text_of(names[0]) or None) if names else None,
@@ -106,9 +124,13 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
         (*problems, *_condition_problems(file, exports)),
         file.location([*names, root][0]),
         file.location([*build_types, root][0]),
-        dependencies=frozenset(dependencies),
+        dependencies=frozenset(dependency.name for dependency in declared),
         groups=frozenset(groups),
         misplaced=_misplaced_dependencies(file, exports),
+        declared=tuple(declared),
+        version=root.findtext("{*}version", "").strip(),
+        has_build_type=bool(build_types),
+        loose_texts=tuple(loose),
     )
 
 

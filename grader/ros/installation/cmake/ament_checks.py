@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 
 from grader.ros.installation.cmake.cmake_build import Build
 from grader.ros.installation.cmake.language import Argument, Command
+from grader.ros.installation.installation import FoundPackage
 from grader.ros.known.cmake_words import cmake_words
 
 _SWITCH = "BUILD_TESTING"
@@ -26,6 +27,10 @@ def check_tests(build: Build, commands: Sequence[Command]) -> None:
         if command.name == "if" and [one.text for one in command.arguments] == [_SWITCH]:
             _check_providers(build, command.body)
             for inner in command.body:
+                words = [argument.text for argument in inner.arguments]
+                if inner.name == "find_package" and "REQUIRED" in words[1:]:
+                    looked_for = FoundPackage(words[0], inner.at, True, True, is_for_tests=True)
+                    build.found_packages.append(looked_for)
                 if _GTEST.fullmatch(inner.name):
                     build.require_sources([*_sources(build, inner)], inner)
     _check_providers(build, commands)

@@ -45,7 +45,9 @@ from grader.ros.workspace.rules.names import (
 )
 from grader.ros.workspace.rules.namespaces import namespace_facts
 from grader.ros.workspace.rules.nested_packages import nested_package_facts
+from grader.ros.workspace.rules.older_gazebo import older_gazebo_facts
 from grader.ros.workspace.rules.one_machine import machine_facts
+from grader.ros.workspace.rules.package_forms import package_form_facts
 from grader.ros.workspace.rules.parameter_lists import list_facts
 from grader.ros.workspace.rules.parameters import parameter_facts
 from grader.ros.workspace.rules.plugin_classes import plugin_class_facts
@@ -58,6 +60,7 @@ from grader.ros.workspace.rules.remapped_names import remapping_facts
 from grader.ros.workspace.rules.renamed_nodes import renamed_node_facts
 from grader.ros.workspace.rules.repeated_interfaces import repeated_interface_facts
 from grader.ros.workspace.rules.rule_table import DEFINED, AnyFamily
+from grader.ros.workspace.rules.side_values import side_facts
 from grader.ros.workspace.rules.simulated_nodes import simulated_node_facts
 from grader.ros.workspace.rules.simulated_topics import simulated_topic_facts
 from grader.ros.workspace.rules.spawners import spawner_facts
@@ -116,6 +119,9 @@ _READERS = (
     classic_plugin_facts,
     simulated_node_facts,
     repeated_interface_facts,
+    package_form_facts,
+    older_gazebo_facts,
+    side_facts,
 )
 
 

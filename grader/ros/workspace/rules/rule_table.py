@@ -89,6 +89,8 @@ _NOT_BUILT = Kind("REF037", "Package that colcon does not find", severity="note"
 _OTHER_TIME = Kind(
     "REF038", "Node beside a simulation without its time", severity="note", effect="other"
 )
+_FORM = Kind("REF039", "Form of a package of which tools warn or that they ignore", "note", "other")
+_NO_BUILD = _warning("REF040", "Package that colcon does not build")
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -539,6 +541,12 @@ CENTRE_OF_MASS = _other_value(
 INERTIA_AXIS = _other_value(
     "inertia-axis", sentence="The inertia of a cylinder is that about its own axis."
 )
+INERTIA_SIZE = _other_value(
+    "inertia-size", sentence="The inertia of a link is that of a body of its size."
+)
+LINK_SIDE = _other_value(
+    "link-side", sentence="Links that are called left are on the left of those called right."
+)
 MESH_UNIT = _other_value("mesh-unit", sentence="Meshes are in metres.")
 
 _transform = _rules_of("transforms", _WRONG_TRANSFORM, _OTHER_TRANSFORM)
@@ -638,6 +646,13 @@ CREATE_OPTION = _word(
 REMAPPED_TOPIC = _word(
     "remapped-topic", sentence="A remapping of a well-known program names a topic that it has."
 )
+OLDER_GAZEBO = Rule(
+    "older-gazebo",
+    "words",
+    _FORM,
+    _FORM,
+    "Plugins have the names of Gazebo, where the workspace uses that in place of Ignition.",
+)
 _message = _rules_of("messages", _NO_MESSAGE)
 MESSAGE_HEADER = _message(
     "message-header", sentence="The messages of a filter or synchroniser have a header."
@@ -671,6 +686,23 @@ PACKAGE_NESTED = Rule(
 )
 HEADER_INSTALLED = _build(
     "header-installed", sentence="A build installs the headers that other packages include."
+)
+_form = _rules_of("builds", _FORM)
+DEPENDENCY_ONCE = _form("dependency-once", sentence="package.xml declares a dependency once.")
+DEPENDENCY_KIND = _form(
+    "dependency-kind",
+    sentence="package.xml declares what a build needs for it, and what a run needs for that.",
+)
+MANIFEST_TEXT = _form("manifest-text", sentence="package.xml has no text beside its elements.")
+PACKAGE_NAME = _form(
+    "package-name", sentence="The name of a package has small letters, digits and underscores."
+)
+PACKAGE_VERSION = _form(
+    "package-version", sentence="setup.py has the version that package.xml has."
+)
+SETUP_KEY = _form("setup-key", sentence="The keys of setup.cfg have underscores, and no dashes.")
+PYTHON_BUILD_TYPE = _rules_of("builds", _NO_BUILD)(
+    "python-build-type", sentence="package.xml of a package with setup.py has a build type."
 )
 # What is wrong where a name of a kind is not defined.
 DEFINED: Mapping[DefinedKind, Rule] = {

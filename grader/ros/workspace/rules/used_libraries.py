@@ -55,13 +55,13 @@ def _used_libraries(
     """Yield the libraries that the files of a package use."""
     words = rosdep_words()
     for imported in imported_modules(workspace, package):
-        is_needed = imported.is_installed and not imported.is_launched
+        is_needed = imported.is_installed and not (imported.is_launched or imported.is_nested)
         if is_needed and imported.name in words.modules and imported.name not in own_modules:
             key = words.modules[imported.name]
             yield _LibraryUse(key, imported.name, imported.location, is_built=False)
     setup = package.installation
     for required in setup.found_packages if setup is not None else ():
-        is_sure = required.is_required and required.is_certain
+        is_sure = required.is_required and required.is_certain and not required.is_for_tests
         if is_sure and required.name in words.libraries:
             assert setup is not None
             key, at = words.libraries[required.name], setup.location(required.at)
@@ -93,7 +93,8 @@ def _undeclared(
     message = f"package.xml of {package.name!r} does not declare {use.key!r}, which is used here"
     start = package.manifest.name_location
     wrong = Mismatch(LIBRARY_DECLARED, message, use.location, start, not is_brought)
-    yield wrong._replace(word=use.name, lacked=use.key, is_built=use.is_built)
+    tag = "depend" if use.is_built else "exec_depend"
+    yield wrong._replace(word=use.name, lacked=use.key, tag=tag)
 
 
 def _is_brought(package: Package, key: str, declared: Collection[str]) -> bool:
