@@ -3,6 +3,7 @@
 import re
 from collections.abc import Collection, Iterator
 from functools import cached_property
+from typing import NamedTuple
 
 from grader.base.source import Location, Source
 from grader.base.text import counted, cut, quoted
@@ -21,6 +22,9 @@ _HOME = re.compile(
     r"(?<![\w$}/.:])(?:file://)?"
     r"(/(?:(?:home|Users)/[\w.-]+|root(?=/[\w./-]*/(?:src|install)/))/[^\s\"'<>,;:)}\]]*)"
 )
+# A folder of a workspace: /ros2_ws/src/rover/map.yaml.
+_WORKSPACE = re.compile(r"ws/(?:src|install)/[^\s\"'<>,;:)}\]]*+")
+_BEFORE = re.compile(r"(?<![\w~$}.:/-])((?:/[\w.-]*+)+)\Z")
 _PLACEHOLDERS = re.compile(r"^/(?:home|Users)/(?:user|username|you|your[\w-]*|<.*)/")
 _TEXTS = (
     *(".yaml", ".yml", ".urdf", ".xacro", ".sdf", ".world", ".json", ".lua"),
@@ -82,6 +86,26 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _variables(workspace)
 
 
+class _MachinePath(NamedTuple):
+    """A path of one machine in a text, and where it is."""
+
+    text: str
+    offset: int
+
+
+def _machine_paths(text: str) -> Iterator[_MachinePath]:
+    """Yield the paths in home folders, and those in workspaces at the root of a machine."""
+    ends = set[int]()
+    for path in _HOME.finditer(text):
+        ends.add(path.end())
+        yield _MachinePath(path[1], path.start(1))
+    for path in _WORKSPACE.finditer(text):
+        start = max(0, path.start() - _MAX_SHOWN)
+        before = _BEFORE.search(text[start : path.start()])
+        if before is not None and path.end() not in ends:
+            yield _MachinePath(f"{before[1]}{path[0]}", start + before.start(1))
+
+
 def _home_values(launch: Launch, topics: _TopicNames) -> Iterator[Mismatch]:
     """Yield the first value of a parameter in a launch file that is a path in a home folder."""
     said = {reference.location for reference in launch.references}
@@ -89,8 +113,8 @@ def _home_values(launch: Launch, topics: _TopicNames) -> Iterator[Mismatch]:
         for given in node.parameters or ():
             for value in given.values.values():
                 text = value.value if isinstance(value.value, str) else ""
-                is_home = _HOME.match(text) and not _PLACEHOLDERS.match(text)
-                is_home = is_home and text not in topics
+                paths = [path for path in _machine_paths(text) if path.offset == 0]
+                is_home = bool(paths) and not _PLACEHOLDERS.match(text) and text not in topics
                 if is_home and value.location.path == launch.source.path:
                     if value.location not in said:
                         shown = quoted(cut(text, _MAX_SHOWN))
@@ -114,20 +138,21 @@ def _home_paths(source: Source, said: Collection[str], topics: _TopicNames) -> I
     Those that are part of what is said otherwise do not count.
     """
     paths = []
-    for path in _HOME.finditer(source.text):
-        is_said = _PLACEHOLDERS.match(path[1]) or any(path[1] in text for text in said)
-        is_comment = _is_in_comment(source.text, path.start())
-        if not is_said and not is_comment and path[1] not in topics:
+    for path in _machine_paths(source.text):
+        is_said = _PLACEHOLDERS.match(path.text) or any(path.text in text for text in said)
+        is_comment = _is_in_comment(source.text, path.offset)
+        if not is_said and not is_comment and path.text not in topics:
             paths.append(path)
     if paths and source.path.endswith(".py"):
         code = parse(source.text.encode("utf-8", "replace"), source.path)
         lines = lines_of_docstrings(code) if isinstance(code, Code) else ()
-        paths = [path for path in paths if source.at(path.start()).line not in lines]
+        paths = [path for path in paths if source.at(path.offset).line not in lines]
     if paths:
-        message = f"the path {quoted(cut(paths[0][1], _MAX_SHOWN))} is of one machine"
+        first = min(paths, key=lambda path: path.offset)
+        message = f"the path {quoted(cut(first.text, _MAX_SHOWN))} is of one machine"
         if len(paths) > 1:
             message += f"; the file has {len(paths)} such paths"
-        yield warning(HOME_PATH, message, source.at(paths[0].start(1)))
+        yield warning(HOME_PATH, message, source.at(first.offset))
 
 
 def _is_in_comment(text: str, offset: int) -> bool:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from grader.base.errors import InputError
 from grader.base.source import Location
 from grader.ros.installation.installation import Installation
+from grader.ros.installation.places import is_launch_file
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
@@ -157,7 +158,9 @@ def _unstarted_scripts(
     home = f"lib/{package.name}/"
     for target in setup.scripts if setup is not None else ():
         name = target.removeprefix(home)
-        if target.startswith(home) and (package.name, name) not in started:
+        source = package.installed.get(target, "")
+        is_other = "/" in name or name == "__init__.py" or is_launch_file(source)
+        if not is_other and (package.name, name) not in started:
             for wrong in _not_executed(package, name, None):
                 yield wrong._replace(is_certain=False)
 

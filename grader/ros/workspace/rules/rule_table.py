@@ -91,6 +91,7 @@ _OTHER_TIME = Kind(
 )
 _FORM = Kind("REF039", "Form of a package of which tools warn or that they ignore", "note", "other")
 _NO_BUILD = _warning("REF040", "Package that colcon does not build")
+_UNREAD = Kind("REF041", "Parameter that no code reads", severity="note", effect="other")
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -193,6 +194,9 @@ INTERFACE_ONCE = _controller(
 MIMIC_COMMAND = _controller(
     "mimic-command", sentence="A joint that mimics another one has no command interface."
 )
+GAZEBO_HARDWARE = _controller(
+    "gazebo-hardware", sentence="The plugin of ros2_control loads hardware of its own package."
+)
 PLUGIN_CLASS = _controller(
     "plugin-class",
     sentence="A package of the workspace describes the controller or hardware that a file names.",
@@ -293,6 +297,16 @@ PARAMETER_EFFECT = Rule(
     _NO_EFFECT,
     _NO_EFFECT,
     "The parameters of a well-known node have an effect under the values of others.",
+)
+PLUGIN_LISTED = Rule(
+    "plugin-listed",
+    "parameters",
+    _NO_EFFECT,
+    _NO_EFFECT,
+    "A list of plugins names each layer that is configured.",
+)
+PARAMETER_READ = Rule(
+    "parameter-read", "words", _UNREAD, _UNREAD, "Code reads the parameters that it declares."
 )
 PARAMETER_RELEASE = Rule(
     "parameter-release",
@@ -586,6 +600,10 @@ SIMULATED_NODE = Rule(
     _OTHER_TIME,
     _OTHER_TIME,
     "The nodes that a launch file starts beside Gazebo use its time.",
+)
+SIMULATED_JOINTS = _companion(
+    "simulated-joints",
+    sentence="Something publishes the positions of the joints of a robot in Gazebo.",
 )
 SIMULATION_STARTED = _companion(
     "simulation-started", sentence="Something starts the Gazebo in which a robot is created."
