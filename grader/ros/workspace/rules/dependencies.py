@@ -1,6 +1,6 @@
 """Dependencies: whether package.xml of a package declares the packages that its files use."""
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from grader.base.names import near
 from grader.ros.installation.manifest import Manifest
@@ -36,7 +36,9 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         if package.manifest is None or package.manifest.refusals:
             continue
         used: dict[str, PackageUse] = {}
+        uses: list[PackageUse] = []
         for use in used_packages(workspace, package):
+            uses.append(use)
             # What a launch file of another package starts, that package has to declare.
             if use.name not in used and package.holds(use.location.path):
                 used[use.name] = use
@@ -45,7 +47,7 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from disordered.values()
         others = {name: use for name, use in used.items() if name not in disordered}
         yield from _undeclared(workspace, package, package.manifest, others)
-        yield from _of_other_kind(package, package.manifest, used)
+        yield from _of_other_kind(package, package.manifest, uses)
 
 
 def _built_before(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
@@ -124,7 +126,7 @@ def _undeclared(
 
 
 def _of_other_kind(
-    package: Package, manifest: Manifest, used: Mapping[str, PackageUse]
+    package: Package, manifest: Manifest, uses: Sequence[PackageUse]
 ) -> Iterator[Mismatch]:
     """Yield the packages that a build needs and package.xml declares only for a run, or inversely.
 
@@ -134,9 +136,11 @@ def _of_other_kind(
     for declared in manifest.declared:
         tags.setdefault(declared.name, set()).add(declared.tag)
     places = {declared.name: declared.location for declared in manifest.declared}
-    for name, use in used.items():
-        given = tags.get(name, set())
-        if not given or use.is_for_tests:
+    said = set[str]()
+    for use in uses:
+        name, given = use.name, tags.get(use.name, set())
+        is_here = package.holds(use.location.path)
+        if not given or use.is_for_tests or name in said or not is_here:
             continue
         if use.is_built and given <= _FOR_RUN:
             kind, other = "when it runs", "build"
@@ -148,6 +152,7 @@ def _of_other_kind(
             f"package.xml of {package.name!r} declares {name!r} only for what it needs {kind}, but "
             f"its {other} needs it: write <depend>{name}</depend>"
         )
+        said.add(name)
         yield warning(DEPENDENCY_KIND, message, places[name], use.location)
 
 

@@ -85,7 +85,7 @@ def _too_large(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
     if not placed:
         return
     centre = inertial.origin.placed_in().translation
-    farthest = []
+    farthest: list[float] = []
     for coordinate, axis in zip(centre, _AXES, strict=True):
         least, most = _extent(placed, axis)
         farthest.append(max(most - coordinate, coordinate - least))
