@@ -104,34 +104,52 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
     build_types = [element for element in exports if _is_used_build_type(element)]
     names: list[Element] = []
     groups = set[str]()
-    declared: list[DeclaredDependency] = []
-    loose: list[tuple[str, Location]] = []
     for element in root.iterchildren("*"):
-        if (element.tail or "").strip():
-            loose.append(((element.tail or "").strip(), file.location(element)))
         tag = tag_of(element)
         if tag == "name":
             names.append(element)
         elif tag == "member_of_group":
             groups.add(text_of(element))
-        elif tag.endswith("depend"):
-            at, is_conditional = file.location(element), element.get("condition") is not None
-            declared.append(DeclaredDependency(text_of(element), tag, at, is_conditional))
+    declared = _declared_dependencies(file)
+    name = text_of(names[0]) if names else ""
+    build_type = " and ".join(map(text_of, build_types)) if build_types else "catkin"
     return Manifest(
         source,
-        (text_of(names[0]) or None) if names else None,
-        " and ".join(map(text_of, build_types)) if build_types else "catkin",
+        name or None,
+        build_type,
         (*problems, *_condition_problems(file, exports)),
         file.location([*names, root][0]),
         file.location([*build_types, root][0]),
         dependencies=frozenset(dependency.name for dependency in declared),
         groups=frozenset(groups),
         misplaced=_misplaced_dependencies(file, exports),
-        declared=tuple(declared),
+        declared=declared,
         version=root.findtext("{*}version", "").strip(),
         has_build_type=bool(build_types),
-        loose_texts=tuple(loose),
+        loose_texts=_loose_texts(file),
     )
+
+
+def _declared_dependencies(file: XmlFile) -> tuple[DeclaredDependency, ...]:
+    """Return the dependencies in a package.xml."""
+    declared = []
+    for element in file.root.iterchildren("*"):
+        tag = tag_of(element)
+        if tag.endswith("depend"):
+            is_conditional = element.get("condition") is not None
+            at = file.location(element)
+            declared.append(DeclaredDependency(text_of(element), tag, at, is_conditional))
+    return tuple(declared)
+
+
+def _loose_texts(file: XmlFile) -> tuple[tuple[str, Location], ...]:
+    """Return the texts between the elements of a package.xml, with the elements before them."""
+    texts = []
+    for element in file.root.iterchildren("*"):
+        text = (element.tail or "").strip()
+        if text:
+            texts.append((text, file.location(element)))
+    return tuple(texts)
 
 
 def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:

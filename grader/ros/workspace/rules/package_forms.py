@@ -42,7 +42,12 @@ def package_form_facts(workspace: Workspace) -> Iterator[Fact]:
         setup = package.installation
         if setup is not None and not setup.is_cmake:
             yield from _other_versions(manifest, setup.source)
-            yield from _missing_build_types(manifest)
+            if not manifest.has_build_type:
+                message = (
+                    "package.xml has no build type, so colcon does not build the package with "
+                    "setup.py: write <export><build_type>ament_python</build_type></export>"
+                )
+                yield warning(PYTHON_BUILD_TYPE, message, manifest.name_location)
             for source in workspace.texts.sources_of(package, ("setup.cfg",)):
                 yield from _dashed_keys(source)
 
@@ -87,16 +92,6 @@ def _other_versions(manifest: Manifest, setup: Source) -> Iterator[Mismatch]:
         message = f"setup.py has the version {version[1]}, package.xml {manifest.version}"
         at = setup.at(version.start(1))
         yield warning(PACKAGE_VERSION, message, at, manifest.name_location)
-
-
-def _missing_build_types(manifest: Manifest) -> Iterator[Mismatch]:
-    """Yield that package.xml of a package with setup.py has no build type."""
-    if not manifest.has_build_type:
-        message = (
-            "package.xml has no build type, so colcon does not build the package with setup.py: "
-            "write <export><build_type>ament_python</build_type></export>"
-        )
-        yield warning(PYTHON_BUILD_TYPE, message, manifest.name_location)
 
 
 def _dashed_keys(source: Source) -> Iterator[Mismatch]:

@@ -2,8 +2,10 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from grader.base.source import Location
+from grader.ros.nodes.node_facts import PackageNodes
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, warning
 from grader.ros.workspace.rules.rule_table import PARAMETER_READ
@@ -22,23 +24,34 @@ def unread_parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     Nothing is said in a package whose code may read all parameters.
     """
     for package in workspace.packages:
-        sources = [*workspace.texts.sources_of(package, (".py",))]
-        texts = {source.path: source.text for source in sources}
-        code = workspace.code.by_package[package.name]
-        declared = [
-            parameter
-            for node in code.nodes
-            for parameter in node.parameters
-            if parameter.is_declared and parameter.location.path in texts
-        ]
+        texts: dict[str, str] = {}
+        for source in workspace.texts.sources_of(package, (".py",)):
+            texts[source.path] = source.text
+        declared = _declared_in(workspace.code.by_package[package.name], texts)
         if not declared or any(word in text for word in _READS_OTHERS for text in texts.values()):
             continue
         yield Compared("words")
-        counts = Counter(name for text in texts.values() for name in _TEXT.findall(text))
-        for at, parameter in {each.location: each for each in declared}.items():
-            lines = texts[at.path].split("\n")[at.line - 1 : at.line]
-            is_statement = lines and lines[0].lstrip().startswith("self.declare_parameter(")
-            is_chained = bool(lines) and lines[0].rstrip().endswith((".value", "_value"))
-            if counts[parameter.name or ""] == 1 and is_statement and not is_chained:
-                message = f"nothing reads the parameter {parameter.name!r}, which is declared here"
+        counts = Counter[str]()
+        for text in texts.values():
+            counts.update(_TEXT.findall(text))
+        lines = {path: text.split("\n") for path, text in texts.items()}
+        for at, name in declared.items():
+            if counts[name] == 1 and _is_statement(lines[at.path][at.line - 1].strip()):
+                message = f"nothing reads the parameter {name!r}, which is declared here"
                 yield warning(PARAMETER_READ, message, at)
+
+
+def _declared_in(code: PackageNodes, texts: Mapping[str, str]) -> dict[Location, str]:
+    """Return the parameters that nodes in some texts declare."""
+    declared = {}
+    for node in code.nodes:
+        for parameter in node.parameters:
+            is_here = parameter.location.path in texts
+            if parameter.is_declared and parameter.name is not None and is_here:
+                declared[parameter.location] = parameter.name
+    return declared
+
+
+def _is_statement(line: str) -> bool:
+    """Return whether a declaration is a statement whose value nothing uses."""
+    return line.startswith("self.declare_parameter(") and not line.endswith((".value", "_value"))
