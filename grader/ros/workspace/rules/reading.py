@@ -29,6 +29,7 @@ from grader.ros.workspace.rules.known_ends import known_end_facts
 from grader.ros.workspace.rules.known_parameters import known_parameter_facts
 from grader.ros.workspace.rules.launch_tables import launch_table_facts
 from grader.ros.workspace.rules.limit_values import limit_facts
+from grader.ros.workspace.rules.link_bodies import body_facts
 from grader.ros.workspace.rules.listed_plugins import listed_plugin_facts
 from grader.ros.workspace.rules.looked_up_transforms import lookup_facts
 from grader.ros.workspace.rules.mass_values import mass_facts
@@ -72,6 +73,7 @@ from grader.ros.workspace.rules.topic_wiring import topic_wiring_facts
 from grader.ros.workspace.rules.unmet_topics import unmet_topic_facts
 from grader.ros.workspace.rules.unread_parameters import unread_parameter_facts
 from grader.ros.workspace.rules.unused import unused_files
+from grader.ros.workspace.rules.unused_arguments import unused_argument_facts
 from grader.ros.workspace.rules.used_libraries import library_facts
 from grader.ros.workspace.rules.wheel_values import wheel_value_facts
 
@@ -130,6 +132,8 @@ _READERS = (
     listed_plugin_facts,
     simulated_joint_facts,
     unread_parameter_facts,
+    unused_argument_facts,
+    body_facts,
 )
 
 

@@ -91,7 +91,9 @@ _OTHER_TIME = Kind(
 )
 _FORM = Kind("REF039", "Form of a package of which tools warn or that they ignore", "note", "other")
 _NO_BUILD = _warning("REF040", "Package that colcon does not build")
-_UNREAD = Kind("REF041", "Parameter that no code reads", severity="note", effect="other")
+_UNREAD = Kind(
+    "REF041", "Parameter or argument that nothing reads", severity="note", effect="other"
+)
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -307,6 +309,20 @@ PLUGIN_LISTED = Rule(
 )
 PARAMETER_READ = Rule(
     "parameter-read", "words", _UNREAD, _UNREAD, "Code reads the parameters that it declares."
+)
+LAUNCH_ARGUMENT_USED = Rule(
+    "launch-argument-used",
+    "words",
+    _UNREAD,
+    _UNREAD,
+    "A launch file uses the arguments that it declares.",
+)
+XACRO_ARGUMENT_USED = Rule(
+    "xacro-argument-used",
+    "words",
+    _UNREAD,
+    _UNREAD,
+    "The files of xacro use the arguments that they declare.",
 )
 PARAMETER_RELEASE = Rule(
     "parameter-release",
@@ -560,6 +576,12 @@ INERTIA_SIZE = _other_value(
 )
 LINK_SIDE = _other_value(
     "link-side", sentence="Links that are called left are on the left of those called right."
+)
+COLLISION_PLACE = _other_value(
+    "collision-place", sentence="A collision with the shape of a visual is where that is."
+)
+GAZEBO_INERTIA = _other_value(
+    "gazebo-inertia", sentence="A link that a joint moves in Gazebo has a mass."
 )
 MESH_UNIT = _other_value("mesh-unit", sentence="Meshes are in metres.")
 
