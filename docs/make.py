@@ -59,6 +59,7 @@ KEYS = {
     "[[test.ignore]]": IGNORE,
 }
 LANGUAGES = {
+    ".cfg": "ini",
     ".cpp": "cpp",
     ".hpp": "cpp",
     ".launch": "xml",

@@ -50,6 +50,7 @@ _MANIFEST = """\
   <exec_depend>rclpy</exec_depend>
   <exec_depend>geometry_msgs</exec_depend>
   <exec_depend>sensor_msgs</exec_depend>
+  <export><build_type>ament_python</build_type></export>
 </package>
 """
 _ROBOT = """\

@@ -35,6 +35,7 @@ ABOUT = {
             "frame": "nothing publishes a frame",
             "parent": "a frame has another parent",
             "reversed": "parent and child are exchanged",
+            "states": "nothing publishes joint states",
         },
     ),
 }
@@ -158,6 +159,7 @@ def publishes_transform(
     controller, a bridge, or the joints of the robot. There may be frames between them.
 
     A pose is known of static publishers, of fixed joints, and of code that sets it to numbers.
+    robot_state_publisher publishes a joint that moves only if something publishes joint states.
 
     Args:
         parent: The frame above.
@@ -172,7 +174,12 @@ def publishes_transform(
     above, below = parent.removeprefix("/"), child.removeprefix("/")
     transforms = launched.graph.transforms()
     certain = [transform for transform in transforms if transform.is_certain]
-    chain = _chain(certain, above, below)
+    with_states = [each for each in certain if _gets_joint_states(launched, each)]
+    chain = _chain(with_states, above, below)
+    if chain is None:
+        chain = _chain(certain, above, below)
+        if chain is not None:
+            return _fail_without_states(launched, chain)
     if chain is not None:
         by = tuple(dict.fromkeys(transform.by for transform in chain))
         if xyz is None and rpy is None:
@@ -232,6 +239,26 @@ def _fail_absent(
         return failed(message, cause="topic")
     guess = f"; there is {quoted(meant)}"
     return failed(message, others[meant].location, detail=guess, cause="topic")
+
+
+def _gets_joint_states(launched: Launched, transform: "GraphTransform") -> bool:
+    """Return whether the joint states are certainly published that a transform needs, if any."""
+    ends = [end for topic in transform.needs for end in launched.graph.ends(_SENDS, topic)]
+    return not transform.needs or any(not placed.doubt for placed in ends)
+
+
+def _fail_without_states(launched: Launched, chain: "Sequence[GraphTransform]") -> Outcome:
+    """Return that nothing publishes the joint states that a transform needs.
+
+    Raises NotDecided if something may.
+    """
+    lacking = next(each for each in chain if not _gets_joint_states(launched, each))
+    for topic in lacking.needs:
+        ends = launched.graph.ends(_SENDS, topic)
+        _check_open(launched, f"something publishes {topic}", ends, _SENDS)
+    message = f"nothing publishes {lacking.needs[0]}"
+    detail = f", without which {lacking.by} has no transform"
+    return failed(message, lacking.location, detail=detail, cause="states")
 
 
 def _doubt_of_transform(

@@ -126,6 +126,7 @@ class FoundPackage(NamedTuple):
     at: Position
     is_required: bool
     is_certain: bool
+    is_for_tests: bool = False  # below if(BUILD_TESTING)
 
 
 class UnclosedExpression(NamedTuple):

@@ -15,6 +15,15 @@ from grader.ros.xml.parsing import Element, XmlFault, XmlFile, recover_xml
 _MAX_MISPLACED = 100  # dependencies in <export>
 
 
+class DeclaredDependency(NamedTuple):
+    """A dependency in package.xml, with its tag: exec_depend."""
+
+    name: str
+    tag: str
+    location: Location
+    is_conditional: bool
+
+
 class Manifest(NamedTuple):
     """The content of a package.xml.
 
@@ -34,6 +43,10 @@ class Manifest(NamedTuple):
     dependencies: frozenset[str] = frozenset()  # the packages that it depends on, in any way
     groups: frozenset[str] = frozenset()  # of packages, of which it is a member
     misplaced: Mapping[str, Location] = {}  # dependencies in <export>, which do not count
+    declared: tuple[DeclaredDependency, ...] = ()  # the dependencies, in their order
+    version: str = ""
+    has_build_type: bool = False
+    loose_texts: tuple[tuple[str, Location], ...] = ()  # between elements, with these
 
     @property
     def refusals(self) -> tuple[Problem, ...]:
@@ -90,26 +103,53 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
     exports = _exports(root)
     build_types = [element for element in exports if _is_used_build_type(element)]
     names: list[Element] = []
-    dependencies, groups = set[str](), set[str]()
+    groups = set[str]()
     for element in root.iterchildren("*"):
         tag = tag_of(element)
         if tag == "name":
             names.append(element)
         elif tag == "member_of_group":
             groups.add(text_of(element))
-        elif tag.endswith("depend"):
-            dependencies.add(text_of(element))
+    declared = _declared_dependencies(file)
+    name = text_of(names[0]) if names else ""
+    build_type = " and ".join(map(text_of, build_types)) if build_types else "catkin"
     return Manifest(
         source,
-        (text_of(names[0]) or None) if names else None,
-        " and ".join(map(text_of, build_types)) if build_types else "catkin",
+        name or None,
+        build_type,
         (*problems, *_condition_problems(file, exports)),
         file.location([*names, root][0]),
         file.location([*build_types, root][0]),
-        dependencies=frozenset(dependencies),
+        dependencies=frozenset(dependency.name for dependency in declared),
         groups=frozenset(groups),
         misplaced=_misplaced_dependencies(file, exports),
+        declared=declared,
+        version=root.findtext("{*}version", "").strip(),
+        has_build_type=bool(build_types),
+        loose_texts=_loose_texts(file),
     )
+
+
+def _declared_dependencies(file: XmlFile) -> tuple[DeclaredDependency, ...]:
+    """Return the dependencies in a package.xml."""
+    declared = []
+    for element in file.root.iterchildren("*"):
+        tag = tag_of(element)
+        if tag.endswith("depend"):
+            is_conditional = element.get("condition") is not None
+            at = file.location(element)
+            declared.append(DeclaredDependency(text_of(element), tag, at, is_conditional))
+    return tuple(declared)
+
+
+def _loose_texts(file: XmlFile) -> tuple[tuple[str, Location], ...]:
+    """Return the texts between the elements of a package.xml, with the elements before them."""
+    texts = []
+    for element in file.root.iterchildren("*"):
+        text = (element.tail or "").strip()
+        if text:
+            texts.append((text, file.location(element)))
+    return tuple(texts)
 
 
 def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:

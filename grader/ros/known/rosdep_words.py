@@ -14,6 +14,7 @@ class RosdepWords(NamedTuple):
     elsewhere: Mapping[str, str]  # how package.xml says it
     modules: Mapping[str, str]  # of Python, with their keys
     libraries: Mapping[str, str]  # that find_package() of CMake finds, with their keys
+    alike: Mapping[str, tuple[str, ...]]  # other keys with which the same is installed
     brought: Mapping[str, frozenset[str]]  # by a key the packages that install it
 
 

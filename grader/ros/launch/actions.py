@@ -45,6 +45,7 @@ from grader.ros.launch.substitutions import (
     listed,
     resolve,
 )
+from grader.ros.python.interpreter import SEARCHED_VARIABLES
 from grader.ros.python.parse import START, Position
 from grader.ros.python.values import (
     Call,
@@ -79,8 +80,6 @@ class NotIncluded(NamedTuple):
 
 # Reads a launch file by its path below the prefix, in a context.
 Include = Callable[[str, Context], NotIncluded | None]
-# By which packages, programs and files are found.
-_SEARCHED = ("AMENT_PREFIX_PATH", "PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "HOME")
 
 
 @dataclass(slots=True)
@@ -395,7 +394,7 @@ def _set_environment(
     variable = known_text(call.kwargs["name"], context, call.at)
     if not variable or "=" in variable:
         raise EvaluationFails(f"an environment variable cannot be called {variable!r}", call.at)
-    if variable in _SEARCHED:
+    if variable in SEARCHED_VARIABLES:
         raise Undetermined(f"what is found with another {variable} is not evaluated", call.at)
 
 

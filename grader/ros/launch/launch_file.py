@@ -56,7 +56,7 @@ from grader.ros.launch.substitutions import (
 )
 from grader.ros.python.budget import Budget
 from grader.ros.python.evaluation import Evaluation, record
-from grader.ros.python.interpreter import MAX_FILE_STEPS, Interpreter
+from grader.ros.python.interpreter import MAX_FILE_STEPS, SEARCHED_VARIABLES, Interpreter
 from grader.ros.python.library import standard_functions
 from grader.ros.python.parse import START, Code, Position, SyntaxFault, location_in, parse
 from grader.ros.python.values import (
@@ -65,6 +65,7 @@ from grader.ros.python.values import (
     EvaluationFails,
     Function,
     FunctionTable,
+    QualifiedName,
     Undetermined,
     Unknown,
     Value,
@@ -93,6 +94,10 @@ _MATCHERS = (
 _ENTRY = "generate_launch_description"
 _NODE = "launch_ros.actions.node.Node"
 _MOVEIT = "moveit_configs_utils"
+# Substitutions of Nav2: the files that they write, or whether a file has a node.
+_NAVIGATION = "nav2_common.launch"
+_OF_NAVIGATION = ("RewrittenYaml", "ReplaceString", "HasNodeParams")
+_CONFIGURATION = "launch.substitutions.launch_configuration.LaunchConfiguration"
 _MAX_INCLUDES = 40
 # What a launch file shares with those that it includes.
 _JOINED = (
@@ -380,6 +385,9 @@ class _PythonLaunchFile:
         known: dict[str, Collection[str]] = {
             module: exported.keys() for module, exported in exports().items()
         }
+        if _NAVIGATION in code.source.text:
+            names_of_navigation = (*_OF_NAVIGATION, "LaunchConfigAsBool", "ParseMultiRobotPose")
+            known = {"nav2_common": ("launch",), _NAVIGATION: names_of_navigation, **known}
         if _MOVEIT in code.source.text:
             from grader.ros.launch.moveit_configs import (  # late: few files use it
                 MoveItConfigurations,
@@ -444,6 +452,12 @@ class _PythonLaunchFile:
             "os.environ.__getitem__": _read_variable,
             "os.environ.get": _read_variable,
             "os.getenv": _read_variable,
+            "os.environ.__setitem__": _set_variable,
+            "os.environ.setdefault": _set_variable,
+            f"{_NAVIGATION}.LaunchConfigAsBool": _configuration,
+            **dict.fromkeys(
+                (f"{_NAVIGATION}.{name}" for name in _OF_NAVIGATION), _text_of_navigation
+            ),
             "xacro.process_file": self._xacro,
             "xacro.process": self._xacro,
             "xacro.parse": self._xacro,
@@ -651,15 +665,36 @@ def _process_doc(evaluation: Evaluation, call: Call) -> Value:
     record(evaluation, call)
 
 
-def _read_variable(_: Evaluation, call: Call) -> Value:
+def _read_variable(evaluation: Evaluation, call: Call) -> Value:
     """Return a variable of the environment: whether it is set is not known."""
     name, default = known(call.argument(0, "key")), known(call.argument(1, "default"))
     if name == "HOME":
         return HOME
     reason = "the environment is not evaluated"
-    if call.name.endswith("__getitem__"):
-        raise Undetermined(reason)
+    if call.name.endswith("__getitem__"):  # a KeyError, if it is not set
+        evaluation.doubted(Unknown(reason, call.at))
+        return UnknownText(reason, call.at)
     return (UnknownText if isinstance(default, str) else Unknown)(reason, call.at)
+
+
+def _set_variable(_: Evaluation, call: Call) -> Value:
+    """Set a variable of the environment, which decides nothing that is evaluated."""
+    name = known(call.args[0]) if call.args else None
+    if not isinstance(name, str) or name in SEARCHED_VARIABLES:
+        raise Undetermined(f"what is found with another {name} is not evaluated", is_final=True)
+    return UnknownText("the environment is not evaluated", call.at)
+
+
+def _text_of_navigation(_: Evaluation, call: Call) -> Value:
+    """Return the text of a substitution of Nav2, which is not known."""
+    name = call.name.rpartition(".")[2]
+    return UnknownText(f"{name} of nav2_common is not evaluated", call.at)
+
+
+def _configuration(evaluation: Evaluation, call: Call) -> Value:
+    """Return the launch configuration that a substitution of Nav2 reads as a truth value."""
+    call.args, call.kwargs = [call.argument(0, "name")], {}
+    return evaluation.call_value(QualifiedName(_CONFIGURATION), call)
 
 
 def _join_paths(evaluation: Evaluation, call: Call) -> Value:

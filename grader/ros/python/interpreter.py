@@ -58,6 +58,17 @@ class _ReturnFlow(py.EvaluationSignal):
         self.value = value
 
 
+_ENVIRONMENTS = ("os.environ", "environ")
+# By which packages, programs and files are found.
+SEARCHED_VARIABLES = ("AMENT_PREFIX_PATH", "PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "HOME")
+_WITHOUT_EFFECT = frozenset(
+    {
+        *("os.path.join", "os.pathsep.join", "os.getenv", "str"),
+        *(f"{name}.get" for name in _ENVIRONMENTS),
+    }
+)
+
+
 class _ClassScope(py.Scope):
     """The names in the body of a class."""
 
@@ -78,6 +89,49 @@ def _catches(kind: ast.expr | None, raised: py.EvaluationFails, at: Position) ->
         message = "which error is raised in this try is not evaluated"
         raise py.Undetermined(message, at, is_final=True)
     return issubclass(raised.kind, caught)
+
+
+def _full_name(node: ast.expr) -> str:
+    """Return the name that an expression is: os.environ; empty for others."""
+    match node:
+        case ast.Name(id=name):
+            return name
+        case ast.Attribute(value=owner, attr=name):
+            return f"{_full_name(owner)}.{name}"
+    return ""
+
+
+def _reads_environment(node: ast.AST) -> bool:
+    nodes = [each for each in walk(node) if isinstance(each, ast.Name | ast.Attribute)]
+    return any(_full_name(each) in _ENVIRONMENTS for each in nodes)
+
+
+def _names_bound(body: Sequence[ast.stmt]) -> set[str] | None:
+    """Return the names that branches bind; None if they do more than set the environment, too."""
+    names = set[str]()
+    for statement in body:
+        match statement:
+            case (
+                ast.Assign(targets=[target], value=value)
+                | ast.AugAssign(target=target, value=value)
+            ):
+                pass
+            case ast.Pass():
+                continue
+            case _:
+                return None
+        calls = [_full_name(each.func) for each in walk(value) if isinstance(each, ast.Call)]
+        if not _WITHOUT_EFFECT.issuperset(calls):
+            return None
+        match target:
+            case ast.Name(id=name):
+                names.add(name)
+            case ast.Subscript(value=owner, slice=ast.Constant(value=key)):
+                if _full_name(owner) not in _ENVIRONMENTS or key in SEARCHED_VARIABLES:
+                    return None
+            case _:
+                return None
+    return names
 
 
 class Interpreter(Evaluation):
@@ -240,7 +294,17 @@ class Interpreter(Evaluation):
                 raise py.Undetermined("this annotation is not evaluated", self.at, is_final=True)
 
     def _if(self, node: ast.If, scope: py.Scope) -> None:
-        self._block(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
+        branches = [*node.body, *node.orelse]
+        if not (_reads_environment(node.test) and self._skip_branches(branches, scope)):
+            self._block(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
+
+    def _skip_branches(self, branches: Sequence[ast.stmt], scope: py.Scope) -> bool:
+        """Make unknown what branches bind of which one runs; return False if they do more."""
+        names = _names_bound(branches)
+        for name in names or ():
+            reason = f"which branch binds {name} {NOT_EVALUATED}"
+            scope.names[name] = py.Unknown(reason, self.at)
+        return names is not None
 
     def _for(self, node: ast.For, scope: py.Scope) -> None:
         items = self.evaluate(node.iter, scope)
@@ -317,6 +381,11 @@ class Interpreter(Evaluation):
         """Run a body, and the handler of what it certainly raises; stop where it may raise more."""
         if node.finalbody:
             raise py.Undetermined("a try with finally is not evaluated", self.at, is_final=True)
+        branches = [*node.body, *node.orelse]
+        for handler in node.handlers:
+            branches += handler.body
+        if any(map(_reads_environment, node.body)) and self._skip_branches(branches, scope):
+            return
         doubt, self.doubt, raised = self.doubt, None, None
         self.attempts += 1
         try:
@@ -550,6 +619,9 @@ class Interpreter(Evaluation):
         load = copy(target)
         load.ctx = ast.Load()
         before, value = self.evaluate(load, scope), self.evaluate(node.value, scope)
+        if isinstance(before, py.Unknown) and before.is_text:
+            self.bind(target, before, scope)  # still a text that is not known
+            return
         if not isinstance(before, py.PLAIN):
             refuse(before, "this value is not supported")
         if isinstance(before, list) and isinstance(node.op, ast.Add):

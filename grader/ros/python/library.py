@@ -196,6 +196,7 @@ USUAL_NAMES = {
 CONSTANTS = {
     "os.sep": "/",
     "os.path.sep": "/",
+    "os.pathsep": ":",
     "os.linesep": "\n",
     "os.curdir": ".",
     "os.pardir": "..",

@@ -242,3 +242,13 @@ def bound_in(node: ast.FunctionDef | ast.Module) -> frozenset[str]:
             case ast.alias(name=full, asname=asname):
                 names.add(asname or full.partition(".")[0])
     return frozenset(names - declared)
+
+
+def lines_of_docstrings(code: Code) -> set[int]:
+    """Return the lines of texts that stand for themselves, such as docstrings."""
+    lines: set[int] = set()
+    for node in every_node(code.tree):
+        match node:
+            case ast.Expr(value=ast.Constant(value=str())):
+                lines.update(range(node.lineno, (node.end_lineno or node.lineno) + 1))
+    return lines

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 
 from grader.ros.installation.cmake.cmake_build import Build
 from grader.ros.installation.cmake.language import Argument, Command
+from grader.ros.installation.installation import FoundPackage
 from grader.ros.known.cmake_words import cmake_words
 
 _SWITCH = "BUILD_TESTING"
@@ -19,16 +20,35 @@ _OTHER_WAYS = ("ament_auto", "ament_lint_auto_find_test_dependencies", "ament_cm
 
 
 def check_tests(build: Build, commands: Sequence[Command]) -> None:
-    """Note what stops the build of tests: a source that is not there, a command without package."""
-    if build.values.variables.get(_SWITCH) != "" or build.doubts:
+    """Note what stops the build of tests: a source that is not there, a command without package.
+
+    The packages that tests require are noted as well.
+    """
+    if build.values.variables.get(_SWITCH) != "":
         return
     for command in commands:
         if command.name == "if" and [one.text for one in command.arguments] == [_SWITCH]:
-            _check_providers(build, command.body)
-            for inner in command.body:
-                if _GTEST.fullmatch(inner.name):
-                    build.require_sources([*_sources(build, inner)], inner)
-    _check_providers(build, commands)
+            build.found_packages += _required_packages(command.body)
+            if not build.doubts:
+                _check_providers(build, command.body)
+                _check_sources(build, command.body)
+    if not build.doubts:
+        _check_providers(build, commands)
+
+
+def _required_packages(commands: Sequence[Command]) -> Iterator[FoundPackage]:
+    """Yield the packages without which tests are not built."""
+    for command in commands:
+        words = [argument.text for argument in command.arguments]
+        if command.name == "find_package" and "REQUIRED" in words[1:]:
+            yield FoundPackage(words[0], command.at, True, True, is_for_tests=True)
+
+
+def _check_sources(build: Build, commands: Sequence[Command]) -> None:
+    """Note the tests with a source that is not there."""
+    for command in commands:
+        if _GTEST.fullmatch(command.name):
+            build.require_sources([*_sources(build, command)], command)
 
 
 def _check_providers(build: Build, commands: Sequence[Command]) -> None:

@@ -49,6 +49,7 @@ _LOOPS = ("while_statement", "for_statement", "do_statement", "for_range_loop")
 # With one of these, a callback may wait for another one.
 _CONCURRENT = ("create_callback_group", "MultiThreadedExecutor", "thread", "async", "detach")
 _WAITING = ("wait", "get")
+_SLEEPING = ("sleep_for", "sleep_until", "sleep", "usleep")
 _GIVEN_CALLBACKS = (*_KEPT, "create_client")
 _SENDING = ("sendTransform", "push_back", "emplace_back")
 _ROTATION = re.compile(r"(\w+(?:(?:\.|->)\w+)*)(?:\.|->)rotation\.([xyzw])")
@@ -279,6 +280,17 @@ class _CppSearch:
         if self._words().isdisjoint(_CONCURRENT):
             for function in self._methods:
                 yield from self._waiting_in(function)
+                yield from self._sleeping_in(function)
+
+    def _sleeping_in(self, function: CppFunction) -> Iterator[CodeFault]:
+        """Yield where a callback sleeps."""
+        for call in self._calls(function, *_SLEEPING):
+            if self._is_in_callback(call, function):
+                name = called_name(call)
+                callback = f"the callback {function.name}()"
+                message = f"while {name}() in {callback} waits, no other callback runs"
+                yield CodeFault("sleeps in a callback", message, call.location, is_certain=False)
+                break
 
     def _waiting_in(self, function: CppFunction) -> Iterator[CodeFault]:
         """Yield where a method waits in a callback.

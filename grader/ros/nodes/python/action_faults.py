@@ -43,7 +43,7 @@ def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Ite
         if used is None:
             continue
         states = _ENDING_STATES.intersection(used)
-        if states - {_CANCELS} or not any(_returns_without_state(function.body)):
+        if states - {_CANCELS} or not _paths_without_state(function.body).returns:
             continue
         of_goal = "a goal that nobody cancels" if states else "its goal"
         message = (
@@ -55,21 +55,87 @@ def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Ite
         yield CodeFault("no goal state", message, at, place, is_certain=False)
 
 
-def _returns_without_state(body: Sequence[ast.stmt]) -> Iterator[ast.Return]:
-    """Yield what statements return, but not after a call that cancels the goal, in any block."""
+class _OpenPaths(NamedTuple):
+    """How statements are left on paths on which nothing has cancelled the goal."""
+
+    reaches_end: bool = True
+    breaks: bool = False
+    returns: bool = False
+
+    def joined(self, other: "_OpenPaths") -> "_OpenPaths":
+        """Return the paths of two branches."""
+        return _OpenPaths(*(one or two for one, two in zip(self, other, strict=True)))
+
+
+_NO_PATH = _OpenPaths(reaches_end=False)
+_LEAVING: Mapping[type[ast.stmt], _OpenPaths] = {
+    ast.Return: _NO_PATH._replace(returns=True),
+    ast.Break: _NO_PATH._replace(breaks=True),
+    ast.Raise: _NO_PATH,
+    ast.Continue: _NO_PATH,
+}
+
+
+def _paths_without_state(body: Sequence[ast.stmt]) -> _OpenPaths:
+    """Return how statements may be left before a call that cancels the goal."""
+    paths = _OpenPaths()
     for statement in body:
-        if isinstance(statement, ast.Return):
-            yield statement
-        if isinstance(statement, _Function | ast.ClassDef):
-            continue
-        match statement:
-            case ast.Expr(value=ast.Call(func=ast.Attribute(attr=name))) if name == _CANCELS:
-                return
-        blocks = [getattr(statement, field, []) for field in ("body", "orelse", "finalbody")]
-        blocks += [handler.body for handler in getattr(statement, "handlers", [])]
-        blocks += [case.body for case in getattr(statement, "cases", [])]
-        for block in blocks:
-            yield from _returns_without_state(block)
+        inner = _paths_through(statement)
+        paths = inner._replace(
+            breaks=paths.breaks or inner.breaks, returns=paths.returns or inner.returns
+        )
+        if not paths.reaches_end:
+            break
+    return paths
+
+
+def _paths_through(statement: ast.stmt) -> _OpenPaths:
+    """Return how one statement may be left."""
+    match statement:
+        case ast.Expr(value=ast.Call(func=ast.Attribute(attr=name))) if name == _CANCELS:
+            return _NO_PATH
+        case ast.While() | ast.For() | ast.AsyncFor():
+            return _paths_of_loop(statement)
+        case ast.Try() | ast.TryStar():
+            return _paths_of_try(statement)
+    paths = _LEAVING.get(type(statement), _NO_PATH)
+    for branch in _branches_of(statement):
+        paths = paths.joined(_paths_without_state(branch))
+    return paths
+
+
+def _branches_of(statement: ast.stmt) -> list[list[ast.stmt]]:
+    """Return the blocks of a statement of which one runs; one without blocks does nothing."""
+    match statement:
+        case ast.If(body=body, orelse=orelse):
+            return [body, orelse]
+        case ast.With(body=body) | ast.AsyncWith(body=body):
+            return [body]
+        case ast.Match(cases=cases):
+            return [[], *(case.body for case in cases)]  # none of them may match
+    return [] if type(statement) in _LEAVING else [[]]
+
+
+def _paths_of_loop(loop: ast.While | ast.For | ast.AsyncFor) -> _OpenPaths:
+    """Return how a loop may be left: by its condition, or by a break."""
+    inside = _paths_without_state(loop.body)
+    after = _paths_without_state(loop.orelse)
+    match loop:
+        case ast.While(test=ast.Constant(value=value)) if value:
+            after = _NO_PATH
+    reaches_end = inside.breaks or after.reaches_end
+    return _OpenPaths(reaches_end, after.breaks, inside.returns or after.returns)
+
+
+def _paths_of_try(statement: ast.Try | ast.TryStar) -> _OpenPaths:
+    """Return how a try statement may be left; what its finally block does counts on each path."""
+    paths = _paths_without_state([*statement.body, *statement.orelse])
+    for handler in statement.handlers:
+        paths = paths.joined(_paths_without_state(handler.body))
+    last = _paths_without_state(statement.finalbody)
+    if not last.reaches_end:
+        return last
+    return _OpenPaths(paths.reaches_end, paths.breaks or last.breaks, paths.returns or last.returns)
 
 
 def _attributes_of(name: str, function: _Function) -> set[str] | None:

@@ -368,14 +368,44 @@ class _Search:
     def _are_set_elsewhere(
         self, names: Collection[str], function: ast.FunctionDef | ast.AsyncFunctionDef
     ) -> bool:
-        """Return whether only other functions set what a function waits for."""
-        inside = {id(node) for node in walk(function)}
+        """Return whether only other functions set what a function waits for.
+
+        What another library is given may set it in a thread of its own.
+        """
+        inside = {*walk(function), *self._given_away()}
+        attributes = {name.rpartition(".")[2] for name in names}
         places: dict[str, list[bool]] = {name: [] for name in names}
         for node in every_node(self._code.tree):
-            is_set = isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
-            if is_set and dotted(node) in places:
-                places[dotted(node)].append(id(node) in inside)
+            if not isinstance(node, ast.Attribute) or not isinstance(node.ctx, ast.Store):
+                continue
+            if dotted(node) in places:
+                places[dotted(node)].append(node in inside)
+            elif node.attr in attributes:
+                return False  # of another object, which may be this one
         return all(len(each) > 1 and not any(each) for each in places.values())
+
+    def _given_away(self) -> set[ast.AST]:
+        """Return the nodes in functions that something else than rclpy may call.
+
+        These are those that it is given, that are decorated, and that these call; also lambdas.
+        """
+        passed: set[ast.AST] = {each.given for each in self._registered}
+        functions: dict[str, list[ast.AST]] = {}
+        given = list[ast.AST]()
+        for node in every_node(self._code.tree):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                functions.setdefault(node.name, []).append(node)
+                given += [node] if node.decorator_list else []
+            elif isinstance(node, ast.Call):
+                passed.add(node.func)
+        for node in every_node(self._code.tree):
+            if node in passed:
+                continue
+            if isinstance(node, ast.Lambda):
+                given.append(node)
+            elif isinstance(node, ast.Name | ast.Attribute):
+                given += functions.get(dotted(node).removeprefix("self."), ())
+        return _with_callees(given, functions)
 
     def _waiting(self, call: ast.Call, name: str, clients: Collection[str]) -> Iterator[CodeFault]:
         called = dotted(call.func)
@@ -436,15 +466,18 @@ class _Search:
         return False
 
     def _related_modules(self) -> Iterator[ModuleText]:
-        """Yield this module, those that it imports and those that import it."""
-        name = self._module.name
-        for module in self._others.values():
-            is_user = any(f"{imported}.".startswith(f"{name}.") for imported in module.imports)
-            is_used = any(
-                f"{imported}.".startswith(f"{module.name}.") for imported in self._module.imports
-            )
-            if module.name == name or is_user or is_used:
-                yield module
+        """Yield this module, those that it imports and those that import it, directly or not."""
+        related = {self._module.name: self._module}
+        for imports in (True, False):
+            pending = [self._module]
+            while pending:
+                module = pending.pop()
+                for other in self._others.values():
+                    by, to = (module, other) if imports else (other, module)
+                    if other.name not in related and _imports(by, to):
+                        related[other.name] = other
+                        pending.append(other)
+        yield from related.values()
 
     def of_actions(self) -> Iterator[CodeFault]:
         """Yield what is done wrong with actions and transforms."""
@@ -528,6 +561,28 @@ class _Search:
                 elif not is_passive(full):
                     return None
         return [*reached.values()]
+
+
+def _imports(module: ModuleText, other: ModuleText) -> bool:
+    """Return whether a module imports another one, or something in it."""
+    return any(f"{imported}.".startswith(f"{other.name}.") for imported in module.imports)
+
+
+def _with_callees(
+    given: Iterable[ast.AST], functions: Mapping[str, Sequence[ast.AST]]
+) -> set[ast.AST]:
+    """Return the nodes in functions, and in those that they call by their names."""
+    inside = set[ast.AST]()
+    pending = [*given]
+    while pending:
+        function = pending.pop()
+        if function in inside:
+            continue
+        for node in walk(function):
+            inside.add(node)
+            if isinstance(node, ast.Call):
+                pending += functions.get(dotted(node.func).removeprefix("self."), ())
+    return inside
 
 
 def _defined_by(node: ast.stmt) -> Iterator[str]:

@@ -84,6 +84,7 @@ class GraphNode(NamedTuple):
     parameters: tuple[GivenValue, ...] = ()
     inside: str = ""  # the full name of the container or manager whose process it is in
     opens_only: OnlyMore = ""
+    process: int | None = None  # the number of the Node that starts its process, if that is known
 
     @property
     def label(self) -> str:
@@ -114,6 +115,7 @@ class GraphTransform(NamedTuple):
     is_static: bool = False
     is_certain: bool = True
     pose: Transform | None = None  # T_parent_child, where it never changes and is known
+    needs: tuple[str, ...] = ()  # topics of joint states, of which it needs one
 
 
 class Unread(NamedTuple):

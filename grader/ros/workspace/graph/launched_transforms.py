@@ -53,6 +53,7 @@ def transforms_in(
                 edge.is_static,
                 edge.is_certain,
                 edge.pose,
+                edge.needs,
             )
     for node in _launched_nodes(launch, without):
         yield from _bridged_by_default(workspace, node)

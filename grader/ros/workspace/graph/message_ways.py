@@ -1,7 +1,8 @@
 """How messages find a way from a topic to another one through the nodes of a graph.
 
 What a node receives goes on in all that it sends: what its code does with it is not examined. The
-goals of actions carry it on as well; whether requests of services do is not known.
+goals of actions carry it on as well; whether requests of services do is not known, nor whether two
+nodes of one process share what they receive.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -81,9 +82,12 @@ class _WaySearch:
         self._in_part: list[_NumberedEnd] = []  # the ends of whose names a part is not known
         self._reading_more: list[int] = []
         self._held_by = _processes_by_held(graph.nodes)
+        self._in_process: dict[int | None, list[int]] = {}
         for number, node in enumerate(graph.nodes):
             known = [end for end in node.ends if not (is_certain and why_end_is_open(node, end))]
             self._ends.append(known)
+            if node.process is not None and not node.inside:
+                self._in_process.setdefault(node.process, []).append(number)
             for end in known:
                 placed = _NumberedEnd(number, end)
                 if PART_UNKNOWN in end.name:
@@ -173,6 +177,10 @@ class _WaySearch:
         for other in self._held_by.get(number, ()):
             yield other, self._nodes[other].doubt
         if not self._is_certain:
+            for other in self._in_process.get(node.process, ()):
+                label = self._nodes[other].label
+                if other != number:
+                    yield other, f"what {node.label} shares with {label} is not known"
             yield from self._possibly_next_to(node)
 
     def _possibly_next_to(self, node: GraphNode) -> Iterator[tuple[int, str]]:

@@ -70,14 +70,15 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
     nodes: list[GraphNode] = []
     processes: list[EndedProcess] = []
     not_started: list[EndedProcess] = []
-    for node in launch.nodes:
+    for process_number, node in enumerate(launch.nodes):
         process = EndedProcess(node.name, node.location, _doubt_of(node))
         if node.when is False:
             not_started.append(process)
         elif _is_process(node):
             processes.append(process)
         else:
-            nodes += _nodes_of_program(making, node)
+            for graph_node in _nodes_of_program(making, node):
+                nodes.append(graph_node._replace(process=process_number))
     nodes += _components(making)
     nodes += _controllers(making)
     nodes += _included_programs(making, processes)

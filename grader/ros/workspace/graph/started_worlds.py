@@ -56,7 +56,10 @@ def started_worlds(workspace: Workspace) -> _StartedWorlds:
     systems: set[str] = set()
     own_systems: set[str] = set()
     misnamed: dict[str, tuple[str, Location]] = {}
+    others = [world.root for world in worlds if files and world not in files]
     for root, place in roots(workspace):
+        if any(root is other for other in others):
+            continue
         for plugin in root.iter("plugin"):
             system, library = system_of(plugin), plugin.get("filename", "")
             if not _is_library_of(library, system):

@@ -31,6 +31,7 @@ from grader.ros.xml.parsing import Element
 _EdgeSource = Literal["robot", "static", "code", "program", "controller", "Gazebo"]
 _TF = "/tf"
 _OF_ROBOT = 100  # parts of searching the plugins of a robot or a world
+_MOVING = ("revolute", "continuous", "prismatic")
 _PUBLISHED = ("publishes", "is above")
 
 
@@ -50,6 +51,8 @@ class Edge(NamedTuple):
     location: Location
     is_static: bool = False
     pose: Transform | None = None  # T_parent_child, where it never changes and is known
+    # The topics of joint states without which robot_state_publisher does not publish it.
+    needs: tuple[str, ...] = ()
 
     @property
     def is_known(self) -> bool:
@@ -71,7 +74,9 @@ def edges_in(workspace: Workspace, launch: int) -> Iterator[Edge]:
             yield Edge("", "", launch, "program", False, node.executable, node.location)
     if publishers:
         is_certain = any(not node.frame_prefix and publishes_as_named(node) for node in publishers)
-        yield from _edges_of_robots(workspace, launch, is_certain=is_certain)
+        topics = [node.topic("joint_states") for node in publishers]
+        states = tuple(topic for topic in topics if topic is not None)
+        yield from _edges_of_robots(workspace, launch, states, is_certain=is_certain)
     yield from _broadcast_by_controllers(workspace, launch)
 
 
@@ -135,8 +140,12 @@ def _edges_of_code(workspace: Workspace, launch: int, node: StartedNode) -> Iter
             yield Edge(first, name or "", launch, "code", False, node.executable, frame.location)
 
 
-def _edges_of_robots(workspace: Workspace, launch: int, *, is_certain: bool) -> Iterator[Edge]:
+def _edges_of_robots(
+    workspace: Workspace, launch: int, states: tuple[str, ...], *, is_certain: bool
+) -> Iterator[Edge]:
     """Yield the joints of the robots, which robot_state_publisher publishes.
+
+    `states` are the topics of the states of joints that move.
 
     It is certain where it is known of which robot.
     """
@@ -158,6 +167,7 @@ def _edges_of_robots(workspace: Workspace, launch: int, *, is_certain: bool) -> 
                 joint.location.resolve(),
                 is_static=pose is not None,
                 pose=pose,
+                needs=states if joint.type in _MOVING else (),
             )
 
 

@@ -42,6 +42,10 @@ from grader.ros.workspace.rules.rule_table import (
 from grader.ros.xml.parsing import Element, XmlFile
 
 _TOPIC_KEYS = ("topic_name", "ros_topic_name", "gz_topic_name", "ign_topic_name")
+_EXCHANGED = re.compile(
+    r"(?P<topic>[^@\s]++)@(?P<gz>(?:gz|ignition)\.msgs\.\w++)(?P<direction>[@\[\]])"
+    r"(?P<ros>\w++/msg/\w++)"
+)
 _COMPUTED = re.compile("^(world|model)/|[${<%]")  # names that Gazebo or a program makes
 _EXPANDED = "expand_gz_topic_names"  # the parameter that puts the namespace before the names
 # Below the topic, or beside it: also of cameras that segment (gz-sensors).
@@ -58,6 +62,7 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _unreadable_files(workspace)
     yield from _incomplete_rows(workspace)
     yield from _other_arguments(workspace)
+    yield from _exchanged_types(workspace)
     rows = list(bridge_rows(workspace))
     if not rows:
         return
@@ -199,6 +204,18 @@ def _other_arguments(workspace: Workspace) -> Iterator[Mismatch]:
             )
             is_certain = node.when is True
             yield Mismatch(BRIDGE_ARGUMENT, message, node.location, is_certain=is_certain)
+
+
+def _exchanged_types(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the arguments of bridges that have the type of Gazebo in place of that of ROS."""
+    for _, node in workspace.launches.nodes:
+        for word in node.arguments or () if node.package == BRIDGE else ():
+            match = _EXCHANGED.fullmatch(word or "")
+            if match is not None:
+                right = f"{match['topic']}@{match['ros']}{match['direction']}{match['gz']}"
+                message = f"the types are exchanged, so nothing is bridged: write {right}"
+                is_certain = node.when is True
+                yield Mismatch(BRIDGE_TYPE, message, node.location, is_certain=is_certain)
 
 
 def _first_other_argument(node: StartedNode) -> str | None:

@@ -1,6 +1,6 @@
 """Dependencies: whether package.xml of a package declares the packages that its files use."""
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from grader.base.names import near
 from grader.ros.installation.manifest import Manifest
@@ -9,8 +9,15 @@ from grader.ros.known.package_rows import package_row
 from grader.ros.known.released import is_released, packages_brought_by, rosdep_keys
 from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, corrections, cost_of_guess
-from grader.ros.workspace.rules.rule_table import BUILD_ORDER, DEPENDENCY_DECLARED
+from grader.ros.workspace.rules.names import (
+    Compared,
+    Fact,
+    Mismatch,
+    corrections,
+    cost_of_guess,
+    warning,
+)
+from grader.ros.workspace.rules.rule_table import BUILD_ORDER, DEPENDENCY_DECLARED, DEPENDENCY_KIND
 from grader.ros.workspace.rules.used_packages import PackageUse, used_packages
 
 # Under which other names package.xml may declare the library of a package: keys of rosdep, and
@@ -18,6 +25,9 @@ from grader.ros.workspace.rules.used_packages import PackageUse, used_packages
 _OTHER_NAMES = ("lib{}-dev", "{}-dev", "lib{}", "{}_vendor", "python3-{}", "python-{}")
 
 _BUILD_TOOL = "ament_cmake"
+_FOR_RUN = frozenset({"exec_depend", "test_depend", "doc_depend"})
+_FOR_BUILD = frozenset({"build_depend", "buildtool_depend"})
+_WITH_NODES = ("rclcpp", "rclcpp_action", "rclcpp_components", "rclcpp_lifecycle", "tf2_ros")
 
 
 def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -26,7 +36,9 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         if package.manifest is None or package.manifest.refusals:
             continue
         used: dict[str, PackageUse] = {}
+        uses: list[PackageUse] = []
         for use in used_packages(workspace, package):
+            uses.append(use)
             # What a launch file of another package starts, that package has to declare.
             if use.name not in used and package.holds(use.location.path):
                 used[use.name] = use
@@ -35,6 +47,7 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from disordered.values()
         others = {name: use for name, use in used.items() if name not in disordered}
         yield from _undeclared(workspace, package, package.manifest, others)
+        yield from _of_other_kind(package, package.manifest, uses)
 
 
 def _built_before(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
@@ -48,7 +61,8 @@ def _built_before(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
         return
     for required in setup.found_packages:
         needed = package.find(required.name)
-        is_sure = required.is_required and required.is_certain and not is_released(required.name)
+        is_sure = required.is_required and required.is_certain and not required.is_for_tests
+        is_sure = is_sure and not is_released(required.name)
         if needed is None or needed is package or not is_sure:
             continue
         if needed.name in _reached(workspace, package):
@@ -96,6 +110,8 @@ def _undeclared(
             meant = None  # another package
         guess = _guess(package, manifest, name, meant)
         bringer = brought.get(name) or (found_with.get(name) if use.is_built else None)
+        if use.is_for_tests and bringer is not None:
+            continue
         message = f"package.xml of {package.name!r} does not declare {name!r}, which "
         if bringer is None:
             message += f"is used here{guess}"
@@ -106,7 +122,38 @@ def _undeclared(
         either = corrections(name, at, meant, start if meant not in used else None)
         lacked = name if not guess else ""
         wrong = Mismatch(DEPENDENCY_DECLARED, message, at, start, bringer is None, either)
-        yield wrong._replace(word=name, lacked=lacked, is_built=use.is_built)
+        yield wrong._replace(word=name, lacked=lacked, tag=use.tag)
+
+
+def _of_other_kind(
+    package: Package, manifest: Manifest, uses: Sequence[PackageUse]
+) -> Iterator[Mismatch]:
+    """Yield the packages that a build needs and package.xml declares only for a run, or inversely.
+
+    A C++ program needs the library of a package with nodes when it runs, too.
+    """
+    tags: dict[str, set[str]] = {}
+    for declared in manifest.declared:
+        tags.setdefault(declared.name, set()).add(declared.tag)
+    places = {declared.name: declared.location for declared in manifest.declared}
+    said = set[str]()
+    for use in uses:
+        name, given = use.name, tags.get(use.name, set())
+        is_here = package.holds(use.location.path)
+        if not given or use.is_for_tests or name in said or not is_here:
+            continue
+        if use.is_built and given <= _FOR_RUN:
+            kind, other = "when it runs", "build"
+        elif (not use.is_built or name in _WITH_NODES) and given <= _FOR_BUILD:
+            kind, other = "to be built", "run"
+        else:
+            continue
+        message = (
+            f"package.xml of {package.name!r} declares {name!r} only for what it needs {kind}, but "
+            f"its {other} needs it: write <depend>{name}</depend>"
+        )
+        said.add(name)
+        yield warning(DEPENDENCY_KIND, message, places[name], use.location)
 
 
 def _guess(package: Package, manifest: Manifest, name: str, meant: str | None) -> str:

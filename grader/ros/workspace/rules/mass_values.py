@@ -1,7 +1,7 @@
 """The centre of mass and the inertia of a link: whether they can be those of its shapes."""
 
 from collections.abc import Iterator
-from math import dist, hypot
+from math import dist, hypot, sqrt
 
 from grader.base.quantities import in_millimetres, point
 from grader.base.source import place
@@ -12,12 +12,13 @@ from grader.ros.urdf.model import Collision, Cylinder, Inertial, Link, Mesh, Vis
 from grader.ros.urdf.shapes import PlacedShape
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Fact, Mismatch, warning
-from grader.ros.workspace.rules.rule_table import CENTRE_OF_MASS, INERTIA_AXIS, Rule
+from grader.ros.workspace.rules.rule_table import CENTRE_OF_MASS, INERTIA_AXIS, INERTIA_SIZE, Rule
 
 _AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _NAMES = "xyz"
 _MARGIN, _MARGIN_SHARE = 0.005, 0.1  # metres, and of the size of the shapes
 _EQUAL, _OTHER = 0.05, 0.2  # of the largest moment of the cylinder
+_TOO_LARGE = 2.0  # of the distance of the farthest part of the shapes
 _OF_LINK = 20  # parts
 
 
@@ -28,12 +29,19 @@ def mass_facts(workspace: Workspace) -> Iterator[Fact]:
     """
     said: set[tuple[Rule, str, int]] = set()  # of a macro, the first link
     for robot in workspace.robots.known:
+        has_large = False  # of a robot, the first link is said
         for link in robot.robot.links:
             workspace.charge(_OF_LINK)
             inertial = link.inertial
             if inertial is None or inertial.mass <= 0.0 or inertial.location is None:
                 continue
-            for wrong in (*_centre_outside(link, inertial), *_other_axis(link, inertial)):
+            too_large = [] if has_large else [*_too_large(link, inertial)]
+            has_large = has_large or bool(too_large)
+            for wrong in (
+                *_centre_outside(link, inertial),
+                *_other_axis(link, inertial),
+                *too_large,
+            ):
                 key = (wrong.rule, wrong.location.path, wrong.location.line)
                 if key not in said:
                     said.add(key)
@@ -63,6 +71,36 @@ def _centre_outside(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
     at = place(inertial.origin.location, "xyz") or place(inertial.location)
     if at is not None:
         yield warning(CENTRE_OF_MASS, message, at.resolve())
+
+
+def _too_large(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
+    """Yield an inertia that no body of the size of the shapes has, whatever is in it.
+
+    A moment of inertia is at most the mass by the square of the distance of its farthest part.
+    """
+    elements: list[Visual | Collision] = [*link.visuals, *link.collisions]
+    if any(isinstance(element.geometry, Mesh) for element in elements):
+        return
+    placed = [PlacedShape(shape, origin.placed_in()) for shape, origin in with_volume(elements)]
+    if not placed:
+        return
+    centre = inertial.origin.placed_in().translation
+    farthest: list[float] = []
+    for coordinate, axis in zip(centre, _AXES, strict=True):
+        least, most = _extent(placed, axis)
+        farthest.append(max(most - coordinate, coordinate - least))
+    reach = hypot(*farthest)
+    ixx, _, _, iyy, _, izz = inertial.inertia
+    radius = sqrt(max(ixx, iyy, izz, 0.0) / inertial.mass)
+    if radius <= _TOO_LARGE * reach:
+        return
+    message = (
+        f"the inertia of {quoted(link.name)} is that of {inertial.mass:g} kg at a distance of "
+        f"{radius:.3g} m; its shapes reach {reach:.3g} m"
+    )
+    at = place(inertial.location, None, "inertia") or place(inertial.location)
+    if at is not None:
+        yield warning(INERTIA_SIZE, message, at.resolve())
 
 
 def _extent(placed: list[PlacedShape], axis: Vector) -> tuple[float, float]:

@@ -83,13 +83,13 @@ def _without_repeated_packages(mismatches: Sequence[Mismatch]) -> Iterator[Misma
 
 def _group_of(mismatch: Mismatch) -> tuple[object, ...]:
     """Return what the packages that are said together have in common."""
-    return mismatch.related, mismatch.rule.name, mismatch.is_certain, mismatch.is_built
+    return mismatch.related, mismatch.rule.name, mismatch.is_certain, mismatch.tag
 
 
 def _lacked_text(workspace: Workspace, mismatches: Sequence[Mismatch]) -> str:
     """Return which packages a package.xml does not declare, and the tags to add."""
     names = [mismatch.lacked for mismatch in mismatches]
-    tag = "depend" if mismatches[0].is_built else "exec_depend"
+    tag = mismatches[0].tag
     tags = " ".join(f"<{tag}>{name}</{tag}>" for name in names)
     used = "which is used here" if len(names) == 1 else "which its files use"
     if not mismatches[0].is_certain:

@@ -97,7 +97,7 @@ class Mismatch(NamedTuple):
     word: str = ""  # that is wrong, in the call or element at the location
     cause: str = ""  # what it has in common with others that one mistake makes
     lacked: str = ""  # the package that package.xml lacks, and is to be added
-    is_built: bool = False  # whether CMake needs that package, rather than a program that runs
+    tag: str = "exec_depend"  # with which package.xml is to declare that package
 
     @property
     def family(self) -> AnyFamily:

@@ -2,11 +2,14 @@
 
 import re
 from collections.abc import Collection, Iterator
+from functools import cached_property
+from typing import NamedTuple
 
 from grader.base.source import Location, Source
 from grader.base.text import counted, cut, quoted
 from grader.ros.known.ros_machine import ros_machine
 from grader.ros.launch.launch_model import Launch
+from grader.ros.python.parse import Code, lines_of_docstrings, parse
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
@@ -19,6 +22,9 @@ _HOME = re.compile(
     r"(?<![\w$}/.:])(?:file://)?"
     r"(/(?:(?:home|Users)/[\w.-]+|root(?=/[\w./-]*/(?:src|install)/))/[^\s\"'<>,;:)}\]]*)"
 )
+# A folder of a workspace: /ros2_ws/src/rover/map.yaml.
+_WORKSPACE = re.compile(r"ws/(?:src|install)/[^\s\"'<>,;:)}\]]*+")
+_BEFORE = re.compile(r"(?<![\w~$}.:/-])((?:/[\w.-]*+)+)\Z")
 _PLACEHOLDERS = re.compile(r"^/(?:home|Users)/(?:user|username|you|your[\w-]*|<.*)/")
 _TEXTS = (
     *(".yaml", ".yml", ".urdf", ".xacro", ".sdf", ".world", ".json", ".lua"),
@@ -32,36 +38,83 @@ _ENVIRONMENT = re.compile(
 _MAX_SHOWN = 60  # characters of a path
 
 
+class _TopicNames:
+    """The names of topics and services in a workspace, which may be like paths: /home/arm/done."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
+
+    def __contains__(self, path: str) -> bool:
+        """Return whether a text is one of the names, or the namespace of one."""
+        name = path.rstrip("/")
+        return any(f"{other}/".startswith(f"{name}/") for other in self._names)
+
+    @cached_property
+    def _names(self) -> set[str]:
+        names: set[str | None] = set()
+        for code in self._workspace.code.by_package.values():
+            for facts in code.nodes:
+                names.update(endpoint.name for endpoint in facts.endpoints)
+        for _, node in self._workspace.launches.nodes:
+            names.add(node.namespace)
+            for rule in node.remaps or ():
+                names.update(rule)
+        return {name for name in names if name is not None}
+
+
 def machine_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield paths in home folders and environment variables that a launch file needs.
 
-    A path in somebody's home folder is yielded once a file.
+    A path in somebody's home folder is yielded once a file. Names of topics and services are no
+    paths, nor is what comments and docstrings say.
 
     Those of a launch file at which it reads files are problems of this file, and not yielded.
     """
+    topics = _TopicNames(workspace)
     launches: dict[str, Launch] = {}
     for package, path, launch in workspace.launches.files:
         launches[package.path(path)] = launch
-        yield from _home_values(launch)
+        yield from _home_values(launch, topics)
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, _TEXTS):
             if source.path not in launches:
                 yield Compared("machine")
-                yield from _home_paths(source, ())
+                yield from _home_paths(source, (), topics)
         for source in workspace.texts.launch_sources(package):
             if source.path in launches:
-                yield from _home_paths(source, _said_paths(launches[source.path]))
+                yield from _home_paths(source, _said_paths(launches[source.path]), topics)
     yield from _variables(workspace)
 
 
-def _home_values(launch: Launch) -> Iterator[Mismatch]:
+class _MachinePath(NamedTuple):
+    """A path of one machine in a text, and where it is."""
+
+    text: str
+    offset: int
+
+
+def _machine_paths(text: str) -> Iterator[_MachinePath]:
+    """Yield the paths in home folders, and those in workspaces at the root of a machine."""
+    ends = set[int]()
+    for path in _HOME.finditer(text):
+        ends.add(path.end())
+        yield _MachinePath(path[1], path.start(1))
+    for path in _WORKSPACE.finditer(text):
+        start = max(0, path.start() - _MAX_SHOWN)
+        before = _BEFORE.search(text[start : path.start()])
+        if before is not None and path.end() not in ends:
+            yield _MachinePath(f"{before[1]}{path[0]}", start + before.start(1))
+
+
+def _home_values(launch: Launch, topics: _TopicNames) -> Iterator[Mismatch]:
     """Yield the first value of a parameter in a launch file that is a path in a home folder."""
     said = {reference.location for reference in launch.references}
     for node in launch.nodes:
         for given in node.parameters or ():
             for value in given.values.values():
                 text = value.value if isinstance(value.value, str) else ""
-                is_home = _HOME.match(text) and not _PLACEHOLDERS.match(text)
+                paths = [path for path in _machine_paths(text) if path.offset == 0]
+                is_home = bool(paths) and not _PLACEHOLDERS.match(text) and text not in topics
                 if is_home and value.location.path == launch.source.path:
                     if value.location not in said:
                         shown = quoted(cut(text, _MAX_SHOWN))
@@ -79,21 +132,27 @@ def _said_paths(launch: Launch) -> list[str]:
     return said
 
 
-def _home_paths(source: Source, said: Collection[str]) -> Iterator[Mismatch]:
+def _home_paths(source: Source, said: Collection[str], topics: _TopicNames) -> Iterator[Mismatch]:
     """Yield that a file names paths in somebody's home folder, at the first of them.
 
     Those that are part of what is said otherwise do not count.
     """
     paths = []
-    for path in _HOME.finditer(source.text):
-        is_said = _PLACEHOLDERS.match(path[1]) or any(path[1] in text for text in said)
-        if not is_said and not _is_in_comment(source.text, path.start()):
+    for path in _machine_paths(source.text):
+        is_said = _PLACEHOLDERS.match(path.text) or any(path.text in text for text in said)
+        is_comment = _is_in_comment(source.text, path.offset)
+        if not is_said and not is_comment and path.text not in topics:
             paths.append(path)
+    if paths and source.path.endswith(".py"):
+        code = parse(source.text.encode("utf-8", "replace"), source.path)
+        lines = lines_of_docstrings(code) if isinstance(code, Code) else ()
+        paths = [path for path in paths if source.at(path.offset).line not in lines]
     if paths:
-        message = f"the path {quoted(cut(paths[0][1], _MAX_SHOWN))} is of one machine"
+        first = min(paths, key=lambda path: path.offset)
+        message = f"the path {quoted(cut(first.text, _MAX_SHOWN))} is of one machine"
         if len(paths) > 1:
             message += f"; the file has {len(paths)} such paths"
-        yield warning(HOME_PATH, message, source.at(paths[0].start(1)))
+        yield warning(HOME_PATH, message, source.at(first.offset))
 
 
 def _is_in_comment(text: str, offset: int) -> bool:

@@ -3,13 +3,14 @@
 The nodes are those that a lifecycle manager looks after.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
 from grader.base.errors import InputError
 from grader.base.source import Location
 from grader.ros.installation.installation import Installation
+from grader.ros.installation.places import is_launch_file
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
@@ -49,8 +50,10 @@ _OF_MISSING = 5_000  # parts: similar names are searched among all programs
 
 def program_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the programs that launch files start and no package has, and unstarted nodes."""
+    started = {(node.package, node.executable) for _, node in workspace.launches.nodes}
     for package in workspace.packages:
         yield from _entry_points(workspace, package)
+        yield from _unstarted_scripts(package, started)
     for package, node in workspace.launches.nodes:
         if not workspace.folder.means_one(package, node.package):
             yield Undecided("programs", f"several packages are named {node.package!r}")
@@ -89,7 +92,7 @@ def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Ite
         wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
         yield wrong._replace(word=node.executable)
     else:
-        yield from _not_executed(owner, node)
+        yield from _not_executed(owner, node.executable, node.location)
 
 
 def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
@@ -144,13 +147,30 @@ def _other_modules(package: Package) -> Iterator[Mismatch]:
             yield warning(ENTRY_MODULE, message, entry.location, place)
 
 
-def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:
-    """Yield that Linux cannot execute a script.
+def _unstarted_scripts(
+    package: Package, started: Collection[tuple[str, str]]
+) -> Iterator[Mismatch]:
+    """Yield the scripts that CMake installs as programs, and that Linux cannot execute.
+
+    A launch file that starts one is said to start it.
+    """
+    setup = package.installation
+    home = f"lib/{package.name}/"
+    for target in setup.scripts if setup is not None else ():
+        name = target.removeprefix(home)
+        source = package.installed.get(target, "")
+        is_other = "/" in name or name == "__init__.py" or is_launch_file(source)
+        if not is_other and (package.name, name) not in started:
+            for wrong in _not_executed(package, name, None):
+                yield wrong._replace(is_certain=False)
+
+
+def _not_executed(package: Package, name: str, at: Location | None) -> Iterator[Mismatch]:
+    """Yield that Linux cannot execute a script, which is started at a place.
 
     Its first line has to name the interpreter, and end without CR.
     """
-    target = f"lib/{package.name}/{node.executable}"
-    source = package.installed.get(target, "")
+    source = package.installed.get(f"lib/{package.name}/{name}", "")
     if source.endswith(".py"):
         with suppress(InputError):
             start = package.tree.files[source].read(_MAX_FIRST_LINE, first=True)
@@ -161,9 +181,8 @@ def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:
                 wrong = "ends as on Windows, with CR LF"
             else:
                 return
-            message = f"Linux cannot execute {node.executable}: its first line {wrong}"
-            at = Location(package.path(source), 1, 1)
-            yield Mismatch(PROGRAM_RUNS, message, at, node.location)
+            message = f"Linux cannot execute {name}: its first line {wrong}"
+            yield Mismatch(PROGRAM_RUNS, message, Location(package.path(source), 1, 1), at)
 
 
 class _MissingProgram(NamedTuple):

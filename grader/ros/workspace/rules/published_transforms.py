@@ -31,6 +31,7 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
                 "rotation: tf2 ignores the transform; without one it is 0 0 0 1"
             )
             yield Mismatch(TRANSFORM_ROTATION, message, node.location)
+    has_robots = len(workspace.robots.known) > 1  # of which one may run in Gazebo
     certain = [edge for edge in graph_of(workspace).edges if edge.is_certain]
     for of_launch in grouped(certain, lambda edge: edge.launch).values():
         edges: list[Edge] = []
@@ -38,7 +39,7 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
         for edge in of_launch:
             if edge.source == "robot":
                 joints[edge.child] = edge
-            elif edge.is_known:
+            elif edge.is_known and not (edge.source == "Gazebo" and has_robots):
                 edges.append(edge)
         if edges:
             yield Compared("transforms")

@@ -22,12 +22,15 @@ from grader.ros.workspace.rules.footprint_values import footprint_facts
 from grader.ros.workspace.rules.frames import frame_facts
 from grader.ros.workspace.rules.gains import gain_facts
 from grader.ros.workspace.rules.gazebo import gazebo_facts
+from grader.ros.workspace.rules.gazebo_hardware import gazebo_hardware_facts
 from grader.ros.workspace.rules.headers import header_facts
 from grader.ros.workspace.rules.interfaces import interface_facts
 from grader.ros.workspace.rules.known_ends import known_end_facts
 from grader.ros.workspace.rules.known_parameters import known_parameter_facts
 from grader.ros.workspace.rules.launch_tables import launch_table_facts
 from grader.ros.workspace.rules.limit_values import limit_facts
+from grader.ros.workspace.rules.link_bodies import body_facts
+from grader.ros.workspace.rules.listed_plugins import listed_plugin_facts
 from grader.ros.workspace.rules.looked_up_transforms import lookup_facts
 from grader.ros.workspace.rules.mass_values import mass_facts
 from grader.ros.workspace.rules.meeting_ends import meeting_facts
@@ -45,7 +48,9 @@ from grader.ros.workspace.rules.names import (
 )
 from grader.ros.workspace.rules.namespaces import namespace_facts
 from grader.ros.workspace.rules.nested_packages import nested_package_facts
+from grader.ros.workspace.rules.older_gazebo import older_gazebo_facts
 from grader.ros.workspace.rules.one_machine import machine_facts
+from grader.ros.workspace.rules.package_forms import package_form_facts
 from grader.ros.workspace.rules.parameter_lists import list_facts
 from grader.ros.workspace.rules.parameters import parameter_facts
 from grader.ros.workspace.rules.plugin_classes import plugin_class_facts
@@ -58,13 +63,17 @@ from grader.ros.workspace.rules.remapped_names import remapping_facts
 from grader.ros.workspace.rules.renamed_nodes import renamed_node_facts
 from grader.ros.workspace.rules.repeated_interfaces import repeated_interface_facts
 from grader.ros.workspace.rules.rule_table import DEFINED, AnyFamily
+from grader.ros.workspace.rules.side_values import side_facts
+from grader.ros.workspace.rules.simulated_joints import simulated_joint_facts
 from grader.ros.workspace.rules.simulated_nodes import simulated_node_facts
 from grader.ros.workspace.rules.simulated_topics import simulated_topic_facts
 from grader.ros.workspace.rules.spawners import spawner_facts
 from grader.ros.workspace.rules.srdf import srdf_facts
 from grader.ros.workspace.rules.topic_wiring import topic_wiring_facts
 from grader.ros.workspace.rules.unmet_topics import unmet_topic_facts
+from grader.ros.workspace.rules.unread_parameters import unread_parameter_facts
 from grader.ros.workspace.rules.unused import unused_files
+from grader.ros.workspace.rules.unused_arguments import unused_argument_facts
 from grader.ros.workspace.rules.used_libraries import library_facts
 from grader.ros.workspace.rules.wheel_values import wheel_value_facts
 
@@ -116,6 +125,15 @@ _READERS = (
     classic_plugin_facts,
     simulated_node_facts,
     repeated_interface_facts,
+    package_form_facts,
+    older_gazebo_facts,
+    side_facts,
+    gazebo_hardware_facts,
+    listed_plugin_facts,
+    simulated_joint_facts,
+    unread_parameter_facts,
+    unused_argument_facts,
+    body_facts,
 )
 
 

@@ -89,6 +89,11 @@ _NOT_BUILT = Kind("REF037", "Package that colcon does not find", severity="note"
 _OTHER_TIME = Kind(
     "REF038", "Node beside a simulation without its time", severity="note", effect="other"
 )
+_FORM = Kind("REF039", "Form of a package of which tools warn or that they ignore", "note", "other")
+_NO_BUILD = _warning("REF040", "Package that colcon does not build")
+_UNREAD = Kind(
+    "REF041", "Parameter or argument that nothing reads", severity="note", effect="other"
+)
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -191,6 +196,9 @@ INTERFACE_ONCE = _controller(
 MIMIC_COMMAND = _controller(
     "mimic-command", sentence="A joint that mimics another one has no command interface."
 )
+GAZEBO_HARDWARE = _controller(
+    "gazebo-hardware", sentence="The plugin of ros2_control loads hardware of its own package."
+)
 PLUGIN_CLASS = _controller(
     "plugin-class",
     sentence="A package of the workspace describes the controller or hardware that a file names.",
@@ -291,6 +299,30 @@ PARAMETER_EFFECT = Rule(
     _NO_EFFECT,
     _NO_EFFECT,
     "The parameters of a well-known node have an effect under the values of others.",
+)
+PLUGIN_LISTED = Rule(
+    "plugin-listed",
+    "parameters",
+    _NO_EFFECT,
+    _NO_EFFECT,
+    "A list of plugins names each layer that is configured.",
+)
+PARAMETER_READ = Rule(
+    "parameter-read", "words", _UNREAD, _UNREAD, "Code reads the parameters that it declares."
+)
+LAUNCH_ARGUMENT_USED = Rule(
+    "launch-argument-used",
+    "words",
+    _UNREAD,
+    _UNREAD,
+    "A launch file uses the arguments that it declares.",
+)
+XACRO_ARGUMENT_USED = Rule(
+    "xacro-argument-used",
+    "words",
+    _UNREAD,
+    _UNREAD,
+    "The files of xacro use the arguments that they declare.",
 )
 PARAMETER_RELEASE = Rule(
     "parameter-release",
@@ -542,6 +574,18 @@ CENTRE_OF_MASS = _other_value(
 INERTIA_AXIS = _other_value(
     "inertia-axis", sentence="The inertia of a cylinder is that about its own axis."
 )
+INERTIA_SIZE = _other_value(
+    "inertia-size", sentence="The inertia of a link is that of a body of its size."
+)
+LINK_SIDE = _other_value(
+    "link-side", sentence="Links that are called left are on the left of those called right."
+)
+COLLISION_PLACE = _other_value(
+    "collision-place", sentence="A collision with the shape of a visual is where that is."
+)
+GAZEBO_INERTIA = _other_value(
+    "gazebo-inertia", sentence="A link that a joint moves in Gazebo has a mass."
+)
 MESH_UNIT = _other_value("mesh-unit", sentence="Meshes are in metres.")
 
 _transform = _rules_of("transforms", _WRONG_TRANSFORM, _OTHER_TRANSFORM)
@@ -581,6 +625,10 @@ SIMULATED_NODE = Rule(
     _OTHER_TIME,
     _OTHER_TIME,
     "The nodes that a launch file starts beside Gazebo use its time.",
+)
+SIMULATED_JOINTS = _companion(
+    "simulated-joints",
+    sentence="Something publishes the positions of the joints of a robot in Gazebo.",
 )
 SIMULATION_STARTED = _companion(
     "simulation-started", sentence="Something starts the Gazebo in which a robot is created."
@@ -641,6 +689,13 @@ CREATE_OPTION = _word(
 REMAPPED_TOPIC = _word(
     "remapped-topic", sentence="A remapping of a well-known program names a topic that it has."
 )
+OLDER_GAZEBO = Rule(
+    "older-gazebo",
+    "words",
+    _FORM,
+    _FORM,
+    "Plugins have the names of Gazebo, where the workspace uses that in place of Ignition.",
+)
 _message = _rules_of("messages", _NO_MESSAGE)
 MESSAGE_HEADER = _message(
     "message-header", sentence="The messages of a filter or synchroniser have a header."
@@ -674,6 +729,23 @@ PACKAGE_NESTED = Rule(
 )
 HEADER_INSTALLED = _build(
     "header-installed", sentence="A build installs the headers that other packages include."
+)
+_form = _rules_of("builds", _FORM)
+DEPENDENCY_ONCE = _form("dependency-once", sentence="package.xml declares a dependency once.")
+DEPENDENCY_KIND = _form(
+    "dependency-kind",
+    sentence="package.xml declares what a build needs for it, and what a run needs for that.",
+)
+MANIFEST_TEXT = _form("manifest-text", sentence="package.xml has no text beside its elements.")
+PACKAGE_NAME = _form(
+    "package-name", sentence="The name of a package has small letters, digits and underscores."
+)
+PACKAGE_VERSION = _form(
+    "package-version", sentence="setup.py has the version that package.xml has."
+)
+SETUP_KEY = _form("setup-key", sentence="The keys of setup.cfg have underscores, and no dashes.")
+PYTHON_BUILD_TYPE = _rules_of("builds", _NO_BUILD)(
+    "python-build-type", sentence="package.xml of a package with setup.py has a build type."
 )
 # What is wrong where a name of a kind is not defined.
 DEFINED: Mapping[DefinedKind, Rule] = {

@@ -8,6 +8,7 @@ from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.workspace.graph.bridge_rows import BRIDGE
 from grader.ros.workspace.graph.graph import graph_of
+from grader.ros.workspace.model.own_code import CPP_ENDINGS
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, warning
 from grader.ros.workspace.rules.rule_table import SIMULATED_NODE
@@ -40,7 +41,7 @@ def simulated_node_facts(workspace: Workspace) -> Iterator[Fact]:
         is_mixed = any(True in told.get(node.location, ()) for node in launch.nodes)
         late = []
         for node in launch.nodes:
-            is_own = is_mixed and workspace.package_of(node) is not None
+            is_own = is_mixed and _has_silent_code(workspace, node)
             has_time = node.executable in _WITH_TIME or package_row(node.package).compares_time
             is_meant = (is_own or has_time) and node.package not in (*_SIMULATIONS, BRIDGE)
             if is_meant and node.location not in seen and _is_untold(node, told):
@@ -52,6 +53,8 @@ def simulated_node_facts(workspace: Workspace) -> Iterator[Fact]:
                 f"{launch.source.path} starts Gazebo, but gives {names} no {_TIME}: the time of "
                 "the machine counts there"
             )
+            if "SetUseSimTime" in launch.source.text:
+                message += "; SetUseSimTime sets only the clock of launch itself"
             yield warning(SIMULATED_NODE, message, late[0].location)
 
 
@@ -64,6 +67,16 @@ def _starts_simulation(launch: Launch) -> bool:
         if folder == "share" and inside.partition("/")[0] in _SIMULATIONS and passed.when is True:
             return True
     return False
+
+
+def _has_silent_code(workspace: Workspace, node: StartedNode) -> bool:
+    """Return whether the code of a node is in the workspace, and does not set its time itself."""
+    package = workspace.package_of(node)
+    if package is None:
+        return False
+    sources = workspace.texts.sources_of(package, (".py", *CPP_ENDINGS))
+    launches = {source.path for source in workspace.texts.launch_sources(package)}
+    return not any(_TIME in source.text for source in sources if source.path not in launches)
 
 
 def _is_untold(node: StartedNode, told: Collection[Location]) -> bool:

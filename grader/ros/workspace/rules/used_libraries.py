@@ -46,7 +46,7 @@ def library_facts(workspace: Workspace) -> Iterator[Fact]:
                 continue
             seen.add(use.key)
             yield Compared("keys")
-            if names.isdisjoint({_library_name(use.key), _library_name(use.name)}):
+            if not _is_declared(use, declared, names):
                 yield from _undeclared(package, use, declared)
 
 
@@ -56,17 +56,31 @@ def _used_libraries(
     """Yield the libraries that the files of a package use."""
     words = rosdep_words()
     for imported in imported_modules(workspace, package):
-        is_needed = imported.is_installed and not imported.is_launched
+        is_needed = imported.is_installed and not (imported.is_launched or imported.is_nested)
         if is_needed and imported.name in words.modules and imported.name not in own_modules:
             key = words.modules[imported.name]
             yield _LibraryUse(key, imported.name, imported.location, is_built=False)
     setup = package.installation
     for required in setup.found_packages if setup is not None else ():
-        is_sure = required.is_required and required.is_certain
+        is_sure = required.is_required and required.is_certain and not required.is_for_tests
         if is_sure and required.name in words.libraries:
             assert setup is not None
             key, at = words.libraries[required.name], setup.location(required.at)
             yield _LibraryUse(key, required.name, at, is_built=True)
+
+
+def _is_declared(use: _LibraryUse, declared: set[str], names: Collection[str]) -> bool:
+    """Return whether a library is declared: by a key of its own, or by those of its parts.
+
+    `names` are what the names of what is declared have in common with other names.
+    """
+    keys = {use.key, use.name, *rosdep_words().alike.get(use.key, ())}
+    if not declared.isdisjoint(keys) or not {_library_name(key) for key in keys}.isdisjoint(names):
+        return True
+    parts = tuple(f"{_library_name(key)}-" for key in keys)
+    return use.is_built and any(
+        name.startswith("lib") and _library_name(name).startswith(parts) for name in declared
+    )
 
 
 def _undeclared(
@@ -80,7 +94,8 @@ def _undeclared(
     message = f"package.xml of {package.name!r} does not declare {use.key!r}, which is used here"
     start = package.manifest.name_location
     wrong = Mismatch(LIBRARY_DECLARED, message, use.location, start, not is_brought)
-    yield wrong._replace(word=use.name, lacked=use.key, is_built=use.is_built)
+    tag = "depend" if use.is_built else "exec_depend"
+    yield wrong._replace(word=use.name, lacked=use.key, tag=tag)
 
 
 def _is_brought(package: Package, key: str, declared: Collection[str]) -> bool:

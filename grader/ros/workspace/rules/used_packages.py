@@ -22,7 +22,9 @@ _FIND = re.compile(r"\$\(find ([\w-]+)\)|package://([\w-]+)/")
 _OF_ROS = ("rclpy", "tf2_ros")
 _XACRO = "xacro"
 _RUNTIME = "rosidl_default_runtime"  # what generated interfaces need
-_IMPORT = re.compile(r"^(?:from[ \t]+(\w+)|import[ \t]+(\w[\w., \t]*))", re.MULTILINE)
+_IMPORT = re.compile(r"^[ \t]*+(?:from[ \t]+(\w+)|import[ \t]+(\w[\w., \t]*))", re.MULTILINE)
+_MAX_GAP = 200  # characters of blank lines and spaces before an import
+_OPTIONAL = ("try:", "TYPE_CHECKING:")  # before an import that may fail
 # What every launch file imports; hardly a package declares it (275 of 691 public ones do not).
 _OF_LAUNCH_FILES = (
     *("launch", "launch_ros", "launch_xml", "launch_yaml", "launch_testing"),
@@ -50,11 +52,22 @@ OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|[._]test\.")
 
 
 class PackageUse(NamedTuple):
-    """A package that a file uses; `is_built` where CMake needs it, and no program that runs."""
+    """A package that a file uses.
+
+    With `is_built`, CMake needs it, and no program that runs; with `is_for_tests`, only tests.
+    """
 
     name: str
     location: Location
     is_built: bool = False
+    is_for_tests: bool = False
+
+    @property
+    def tag(self) -> str:
+        """The tag with which package.xml declares it."""
+        if self.is_for_tests:
+            return "test_depend"
+        return "depend" if self.is_built else "exec_depend"
 
 
 def used_packages(workspace: Workspace, package: Package) -> Iterator[PackageUse]:
@@ -70,7 +83,8 @@ def used_packages(workspace: Workspace, package: Package) -> Iterator[PackageUse
         is_ros = required.name in names or is_released(required.name)
         if is_ros and required.is_required and required.is_certain:
             assert setup is not None
-            yield PackageUse(required.name, setup.location(required.at), is_built=True)
+            at = setup.location(required.at)
+            yield PackageUse(required.name, at, True, required.is_for_tests)
     for name, at in _included(workspace, package, names):
         yield PackageUse(name, at, is_built=True)
 
@@ -89,7 +103,8 @@ def _used_at_run_time(workspace: Workspace, package: Package) -> Iterator[tuple[
     for path, tree in workspace.installed.trees:
         if package.holds(path):
             for _, section in sections_in(tree):
-                yield from _controller_packages(section)
+                yield from _controller_packages(section, names)
+    yield from _hardware_packages(workspace, package, names)
 
 
 def _found_by_xacro(
@@ -170,7 +185,8 @@ def _imported(
         is_ros = name in names or name.endswith("_msgs") or name in _OF_ROS
         is_ros = is_ros or (imported.is_installed and _is_code(name))
         is_usual = imported.is_launched and name in _OF_LAUNCH_FILES
-        if is_ros and not is_usual:
+        is_needed = name in names or not imported.is_nested
+        if is_ros and is_needed and not is_usual:
             yield name, imported.location
 
 
@@ -181,6 +197,7 @@ class _ImportedModule(NamedTuple):
     location: Location
     is_launched: bool  # whether a launch file imports it
     is_installed: bool  # whether a file imports it that a build installs, or a launch file
+    is_nested: bool = False  # in a function, or under a condition
 
 
 def imported_modules(workspace: Workspace, package: Package) -> Iterator[_ImportedModule]:
@@ -196,10 +213,16 @@ def imported_modules(workspace: Workspace, package: Package) -> Iterator[_Import
         inside = source.path.removeprefix(package.path(""))
         is_part = is_launch or inside in installed or inside.partition("/")[0] in own_folders
         is_part = is_part and not OF_TESTS.search(source.path)
-        for match in _IMPORT.finditer(_without_long_texts(source.text)):
+        text = _without_long_texts(source.text)
+        for match in _IMPORT.finditer(text):
+            is_nested = not match[0].startswith(("from", "import"))
+            before = text[max(0, match.start() - _MAX_GAP) : match.start()]
+            if is_nested and before.rstrip().endswith(_OPTIONAL):
+                continue
             for name, offset in _modules_of(match):
                 if name not in modules:
-                    yield _ImportedModule(name, source.at(offset), is_launch, is_part)
+                    at = source.at(offset)
+                    yield _ImportedModule(name, at, is_launch, is_part, is_nested)
 
 
 def _is_code(name: str) -> bool:
@@ -220,13 +243,34 @@ def _modules_of(match: re.Match[str]) -> Iterator[tuple[str, int]]:
         offset += len(part) + 1
 
 
-def _controller_packages(section: YamlNode) -> Iterator[tuple[str, Location]]:
-    """Yield the packages of the controllers that a section of the controller manager names."""
+def _controller_packages(
+    section: YamlNode, names: Collection[str]
+) -> Iterator[tuple[str, Location]]:
+    """Yield the packages of the controllers that a section of the controller manager names.
+
+    `names` are the packages of the workspace, which may have controllers of their own.
+    """
     for inner in section.value.values() if isinstance(section.value, dict) else ():
         kind = inner.get("type")
         if kind is not None and is_known_controller(kind.text):
             own_package = str(kind.text).partition("/")[0]
             yield controller_row(kind.text).package or own_package, kind.location
+        elif kind is not None and str(kind.text).partition("/")[0] in names:
+            yield str(kind.text).partition("/")[0], kind.location
+
+
+def _hardware_packages(
+    workspace: Workspace, package: Package, names: Collection[str]
+) -> Iterator[tuple[str, Location]]:
+    """Yield the packages of the hardware of robots that no package of the workspace declares."""
+    for robot in workspace.robots.known:
+        for system in robot.systems:
+            for plugin in system.iterfind("hardware/plugin"):
+                name = re.split("/|::", (plugin.text or "").strip())[0]
+                at = robot.place(plugin)
+                is_there = package.holds(at.path) and (name in names or is_released(name))
+                if is_there and not any(other.depends_on(name) for other in workspace.packages):
+                    yield name, at
 
 
 def _included(

@@ -1,0 +1,44 @@
+"""Names of Ignition in robots, models and worlds of a workspace that uses Gazebo."""
+
+from collections.abc import Iterator
+
+from grader.base.source import Location
+from grader.base.text import counted
+from grader.ros.workspace.graph.gazebo_topics import roots
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Compared, Fact, warning
+from grader.ros.workspace.rules.rule_table import OLDER_GAZEBO
+
+_PACKAGES = ("ros_gz", "ros_gz_sim", "ros_gz_bridge", "ros_gz_image", "gz_ros2_control")
+_OLDER = ("ignition::gazebo::", "ignition-gazebo-", "libignition-gazebo-")
+_NEWER = ("gz::sim::", "gz-sim-", "libgz-sim-")
+
+
+def older_gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the first plugin that has a name of Ignition beside names of Gazebo.
+
+    Gazebo loads it with a warning until a later release. Names of Gazebo are those of its packages
+    in package.xml, of programs that launch files start, or of other plugins.
+    """
+    plugins: list[tuple[tuple[str, str], Location]] = []
+    is_newer = any(package.depends_on(name) for package in workspace.packages for name in _PACKAGES)
+    is_newer = is_newer or any(node.package in _PACKAGES for _, node in workspace.launches.nodes)
+    for root, place in roots(workspace):
+        for plugin in root.iter("plugin"):
+            workspace.charge(1)
+            names = plugin.get("name", ""), plugin.get("filename", "")
+            if any(name.startswith(_NEWER) for name in names):
+                is_newer = True
+            if any(name.startswith(_OLDER) for name in names):
+                plugins.append((names, place(plugin)))
+    if not is_newer or not plugins:
+        return
+    yield Compared("words")
+    names, at = plugins[0]
+    older = next(name for name in names if name.startswith(_OLDER))
+    newer = older.replace("ignition::gazebo", "gz::sim").replace("ignition-gazebo", "gz-sim")
+    message = f"{older} is a name of Ignition, and this is Gazebo: write {newer}"
+    others = len({place.path for _, place in plugins}) - 1
+    if others:
+        message += f"; {counted(others, 'other file has', 'other files have')} such names, too"
+    yield warning(OLDER_GAZEBO, message, at)

@@ -1,0 +1,72 @@
+"""Links that are called left or right: whether they are on their sides."""
+
+from collections.abc import Iterator
+
+from grader.base.errors import MissingElement
+from grader.base.source import place
+from grader.base.text import enumerated, quoted
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.workspace.model.known_robots import KnownRobot
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rules.rule_table import LINK_SIDE, WHEEL_SIDE
+from grader.ros.workspace.rules.wheel_values import wheel_value_facts
+
+_ROLLING = ("wheel", "module", "caster", "track")  # words in names of links that drive
+_LEAST = 0.01  # metres between left and right
+_OF_PAIR = 20  # parts
+
+
+def side_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the wheels of robots that are called left and are on the right.
+
+    The x axis of the root points forward (REP 103). Where some pairs are on their sides, names may
+    mean something else. Nothing is said where a controller has them on the wrong sides.
+    """
+    wrong: list[Mismatch] = []
+    for robot in workspace.robots.known:
+        pairs = [*_pairs(robot)]
+        workspace.charge(_OF_PAIR * len(pairs))
+        if pairs:
+            yield Compared("values")
+            wrong += _exchanged(robot, pairs)
+    if wrong:
+        facts = wheel_value_facts(workspace)
+        if not any(isinstance(fact, Mismatch) and fact.rule is WHEEL_SIDE for fact in facts):
+            yield from wrong
+
+
+def _pairs(robot: KnownRobot) -> Iterator[tuple[str, str]]:
+    """Yield the links of wheels that are called left, each with the one called right."""
+    names = {link.name for link in robot.robot.links}
+    for name in sorted(names):
+        words = name.lower()
+        other = name.replace("left", "right").replace("Left", "Right").replace("LEFT", "RIGHT")
+        if other != name and other in names and any(word in words for word in _ROLLING):
+            yield name, other
+
+
+def _exchanged(robot: KnownRobot, pairs: list[tuple[str, str]]) -> Iterator[Mismatch]:
+    """Yield that all pairs are on the other sides."""
+    configuration = Configuration(robot.robot)
+    wrong = []
+    for left, right in pairs:
+        try:
+            y_left = configuration.pose(left).translation[1]
+            y_right = configuration.pose(right).translation[1]
+        except MissingElement:
+            return
+        if y_left < -_LEAST and y_right > _LEAST:
+            wrong.append(left)
+        elif y_left > _LEAST or y_right < -_LEAST:
+            return
+    at = None
+    for joint in robot.robot.joints:
+        if wrong and joint.child == wrong[0]:
+            at = place(joint.origin.location, "xyz") if joint.origin is not None else None
+            at = at or place(joint.location)
+    if at is not None:
+        names = enumerated([quoted(name) for name in wrong])
+        verb = "is" if len(wrong) == 1 else "are"
+        message = f"{names} {verb} on the right of the robot, where y is negative (REP 103)"
+        yield warning(LINK_SIDE, message, at.resolve())
