@@ -148,8 +148,8 @@ WEIGHTS = {
     "classroom": 70_400,  # functions of complexity at most 10
     "files": 12_350,  # the end of a log, from a file, a folder or a pipe
     "lab": 100,
-    "lab.authoring": 47_200,  # other ways to give nodes parameters, names and programs; points by the mean; what passed arguments do; functions of complexity at most 10; what nodes look up, spawners start and worlds have, details as comments
-    "lab.checks": 50_700,  # the poses of transforms; parameters that are set; components among nodes; functions of complexity at most 10; what connects in the graph of what is launched
+    "lab.authoring": 47_500,  # other ways to give nodes parameters, names and programs; points by the mean; what passed arguments do; functions of complexity at most 10; what nodes look up, spawners start and worlds have, details as comments
+    "lab.checks": 51_200,  # the poses of transforms; parameters that are set; components among nodes; functions of complexity at most 10; what connects in the graph of what is launched
     "lab.documents": 10_900,
     "lab.grading": 13_000,  # what hides the base
     "lab.hints": 36_000,  # functions of complexity at most 10
@@ -165,8 +165,8 @@ WEIGHTS = {
     "ros.launch": 46_200,  # substitutions of Nav2 and changes of the environment; what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
     "ros.log": 3_800,
     "ros.mesh": 4_300,
-    "ros.nodes": 64_600,  # the poses of transforms that code sends; the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions; fields of transforms of C++ read once
-    "ros.package": 27_900,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
+    "ros.nodes": 64_950,  # the poses of transforms that code sends; the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions; fields of transforms of C++ read once
+    "ros.package": 28_050,  # interface packages that a target does not link; the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
     "ros.python": 29_500,  # branches that only set the environment; the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing

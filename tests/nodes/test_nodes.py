@@ -402,3 +402,42 @@ def test_a_package_without_a_build_file_has_no_nodes() -> None:
     )
     [package] = read_packages(tree, "urdf/hub.urdf")
     assert read_nodes(package) == PackageNodes((), (), ())
+
+
+@pytest.mark.parametrize(
+    ("method", "name"),
+    [
+        ("self.add_on_set_parameters_callback(self.change)", "parameter"),
+        ("self.add_post_set_parameters_callback(self.change)", "parameter"),
+        ("self.create_timer(1.0, self.change)", ""),
+    ],
+)
+def test_an_attribute_that_a_callback_of_parameters_sets(method: str, name: str) -> None:
+    """When the node is started, it has the first value."""
+    text = f"""
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Int32
+
+
+class Counter(Node):
+    def __init__(self):
+        super().__init__('counter')
+        self.topic = self.declare_parameter('topic', 'count').value
+        self.open()
+        {method}
+
+    def open(self):
+        self.create_publisher(Int32, self.topic, 10)
+
+    def change(self, parameters=()):
+        self.topic = 'other'
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Counter())
+"""
+    [node] = nodes_of(text).nodes
+    kinds = [part.kind for end in node.endpoints for part in end.parts]
+    assert kinds == ([name] if name else [])

@@ -604,7 +604,8 @@ def _launch_facts(
     managers = [node for node in launch.nodes if node.executable == LIFECYCLE_MANAGER]
     managed, _ = managed_nodes(submission.workspace, managers)
     if managed <= {*active}:  # something else may activate own nodes
-        nodes = [node for node in nodes if node not in {each.name for each in managers}]
+        programs = {node.name for node in managers}
+        nodes = [node for node in nodes if node not in programs]
     if nodes:
         title = _title_of_nodes(_launch_text(package, name), nodes)
         fact = _package_fact("node_runs", name, launch=name, nodes=nodes)

@@ -1,11 +1,9 @@
 """The pose of a transform of which code sets each number."""
 
 from collections.abc import Callable, Collection, Mapping
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from grader.base.transforms import Transform, rotation_from_quaternion
-from grader.ros.cpp.cpp_values import CppValue
-from grader.ros.python.values import Value
 
 _PLACE = ("transform.translation.x", "transform.translation.y", "transform.translation.z")
 _ROTATION = (
@@ -22,7 +20,7 @@ _Node = TypeVar("_Node")
 def pose_set(
     targets: Collection[str],
     value_set: Callable[[str], _Node | None],
-    value_of: Callable[[_Node], Value | CppValue],
+    value_of: Callable[[_Node], Any],
 ) -> Transform | None:
     """Return T_parent_child that code sets number by number; None where one is not known.
 

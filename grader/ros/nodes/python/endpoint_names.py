@@ -8,7 +8,7 @@ import ast
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
 from grader.ros.nodes.node_facts import NamePart
@@ -28,6 +28,7 @@ _OF_NODE: dict[str, NamePart] = {
 }
 _METHODS = ("get_parameter", "declare_parameter")
 _VALUES = ("value", "string_value", "string_array_value", "integer_value")
+_PARAMETER_CALLBACKS = ("add_on_set_parameters_callback", "add_post_set_parameters_callback")
 _Parts = tuple[NamePart, ...]
 
 
@@ -54,8 +55,14 @@ class Bindings(NamedTuple):
 
 
 def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
-    """Return what names in a function, or attributes of self in a class, are bound to once."""
+    """Return what names in a function, or attributes of self in a class, are bound to once.
+
+    A callback of parameters binds an attribute anew only after the node is started.
+    """
     ordered = sorted(nodes, key=offset_of)
+    if of_self:
+        later = _nodes_of_parameter_callbacks(ordered)
+        ordered = [node for node in ordered if node not in later]
     values, loops = dict[str, ast.expr](), dict[str, _Loop]()
     for node in ordered:
         match node:
@@ -71,6 +78,23 @@ def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
     if of_self:
         once = {name for name in once if name.startswith("self.")}
     return Bindings(_only(values, once), _only(loops, once))
+
+
+def _nodes_of_parameter_callbacks(nodes: Sequence[ast.AST]) -> set[ast.AST]:
+    """Return all nodes of the methods that a class is told of set parameters by."""
+    names: set[str] = set()
+    for node in nodes:
+        match node:
+            case ast.Call(
+                func=ast.Attribute(attr=registers),
+                args=[ast.Attribute(value=ast.Name(id="self"), attr=method), *_],
+            ) if registers in _PARAMETER_CALLBACKS:
+                names.add(method)
+    inside: set[ast.AST] = set()
+    for node in nodes if names else ():
+        if isinstance(node, ast.FunctionDef) and node.name in names:
+            inside.update(ast.walk(node))
+    return inside
 
 
 def _bound_once(nodes: Iterable[ast.AST]) -> set[str]:
