@@ -142,7 +142,9 @@ def test_a_parameter_may_be_declared_by_another_name_of_the_method(mover: str, h
     more = {"src/kit/kit/helper.py": helper}
     launch = _started("{'speed': 2.0}")
     assert _names(_kit(more, mover=mover, launch=launch)) == []
-    [found] = _names(_kit(mover="self.declare_parameter('sped', 1.0)", launch=launch))
+    [found] = _names(
+        _kit(mover="self.declare_parameter('sped', 1.0); self.get_parameter('sped')", launch=launch)
+    )
     assert found.startswith("REF004 the node 'mover': there is no parameter 'speed'")
 
 
