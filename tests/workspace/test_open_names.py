@@ -58,7 +58,7 @@ def generate_launch_description():
 """
 _ROBOT = """\
 <robot name="kit" xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:arg name="tool" default="none"/>
+  <xacro:arg name="tool" default="none"/> <xacro:property name="used" value="$(arg tool)"/>
   <link name="base"/><link name="arm"/>
   <joint name="shoulder" type="revolute">
     <parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>

@@ -55,13 +55,16 @@ def _is_simulated(robot: KnownRobot) -> bool:
 
 
 def _without_mass(robot: Robot) -> Iterator[Mismatch]:
-    """Yield the first joint that moves links which have no mass, with what is fixed to them."""
+    """Yield the first joint that moves links which have no mass, with what is fixed to them.
+
+    A robot without any mass is a sketch.
+    """
     fixed: dict[str, list[Joint]] = {}
     for joint in robot.joints:
         if joint.type == "fixed":
             fixed.setdefault(joint.parent, []).append(joint)
     with_mass = {link.name for link in robot.links if link.inertial and link.inertial.mass > 0.0}
-    for joint in robot.joints:
+    for joint in robot.joints if with_mass else ():
         if not joint.has_position:
             continue
         carried = [joint.child]
