@@ -55,7 +55,7 @@ _MANIFEST = """\
 """
 _ROBOT = """\
 <robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:arg name="size" default="0.05"/>
+  <xacro:arg name="size" default="0.05"/> <xacro:property name="depth" value="$(arg size)"/>
   <xacro:property name="radius" value="0.05"/>
   <xacro:macro name="wheel" params="side y">
     <link name="${side}_wheel">

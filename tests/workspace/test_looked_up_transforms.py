@@ -18,7 +18,7 @@ from tf2_ros import Buffer, TransformListener
 class Finder(Node):
     def __init__(self):
         super().__init__('finder')
-        self.declare_parameter('goal', 'laser')
+        self.declare_parameter('goal', 'laser'); self.get_parameter('goal')
         self.buffer = Buffer()
         self.listener = TransformListener(self.buffer, self)
         self.create_timer(0.1, self.tick)

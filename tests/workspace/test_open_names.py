@@ -58,7 +58,7 @@ def generate_launch_description():
 """
 _ROBOT = """\
 <robot name="kit" xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:arg name="tool" default="none"/>
+  <xacro:arg name="tool" default="none"/> <xacro:property name="used" value="$(arg tool)"/>
   <link name="base"/><link name="arm"/>
   <joint name="shoulder" type="revolute">
     <parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
@@ -142,7 +142,9 @@ def test_a_parameter_may_be_declared_by_another_name_of_the_method(mover: str, h
     more = {"src/kit/kit/helper.py": helper}
     launch = _started("{'speed': 2.0}")
     assert _names(_kit(more, mover=mover, launch=launch)) == []
-    [found] = _names(_kit(mover="self.declare_parameter('sped', 1.0)", launch=launch))
+    [found] = _names(
+        _kit(mover="self.declare_parameter('sped', 1.0); self.get_parameter('sped')", launch=launch)
+    )
     assert found.startswith("REF004 the node 'mover': there is no parameter 'speed'")
 
 

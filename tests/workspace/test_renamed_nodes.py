@@ -19,7 +19,9 @@ _SUBSTITUTIONS = "from launch.substitutions import Command"
 
 def _given(file: str, started: str = _NODE, default: str = "1.0") -> list[Edit]:
     """Return the edits that start the pilot with a parameter file."""
-    declared = f"{_INIT}        self.declare_parameter('speed', {default})\n"
+    declared = (
+        f"{_INIT}        self.declare_parameter('speed', {default}); self.get_parameter('speed')\n"
+    )
     return [(_FILE, file, file), (PILOT, _INIT, declared), (LAUNCH, MORE, started)]
 
 

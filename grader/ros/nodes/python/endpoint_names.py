@@ -93,7 +93,7 @@ def _nodes_of_parameter_callbacks(nodes: Sequence[ast.AST]) -> set[ast.AST]:
     inside: set[ast.AST] = set()
     for node in nodes if names else ():
         if isinstance(node, ast.FunctionDef) and node.name in names:
-            inside.update(ast.walk(node))
+            inside.update(walk(node))
     return inside
 
 

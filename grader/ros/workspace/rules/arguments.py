@@ -78,7 +78,7 @@ def _xacro_arguments(workspace: Workspace) -> Iterator[Fact]:
             yield Definition("xacro argument", match[number], source.at(match.start(number)))
             if "$" in match[number]:
                 yield Open("xacro argument")
-        if _includes_others(workspace, source):
+        if includes_others(workspace, source):
             yield Open("xacro argument")
     for _, _, launch in workspace.launches.files:
         yield from _passed_to_xacro(workspace, launch)
@@ -97,7 +97,7 @@ def _passed_to_xacro(workspace: Workspace, launch: Launch) -> Iterator[Use]:
                 yield Use("xacro argument", name, at, said, optional=not is_expanded)
 
 
-def _includes_others(workspace: Workspace, source: Source) -> bool:
+def includes_others(workspace: Workspace, source: Source) -> bool:
     """Return whether a file includes one of another package, or one that is not read here."""
     if any(workspace.packages[0].find(name) is None for name in _FIND.findall(source.text)):
         return True

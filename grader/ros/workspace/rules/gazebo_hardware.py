@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from grader.ros.workspace.model.known_robots import KnownRobot
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rules.names import Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import GAZEBO_HARDWARE
 
 _PACKAGES = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
@@ -17,7 +17,6 @@ def gazebo_hardware_facts(workspace: Workspace) -> Iterator[Fact]:
     for robot in workspace.robots.known:
         loading = _loading_packages(robot)
         for system in robot.systems if loading else ():
-            yield Compared("controllers")
             yield from _other_hardware(robot, system.findtext("hardware/plugin") or "", loading)
 
 

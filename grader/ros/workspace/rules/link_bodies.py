@@ -9,7 +9,7 @@ from grader.base.text import quoted
 from grader.ros.urdf.model import Joint, Link, Mesh, Robot
 from grader.ros.workspace.model.known_robots import KnownRobot
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rules.names import Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import COLLISION_PLACE, GAZEBO_INERTIA
 
 _LEAST = 0.001  # metres
@@ -21,7 +21,6 @@ def body_facts(workspace: Workspace) -> Iterator[Fact]:
     said = set[tuple[str, int]]()  # of a macro, the first link
     for robot in workspace.robots.known:
         workspace.charge(_OF_LINK * len(robot.robot.links))
-        yield Compared("values")
         for link in robot.robot.links:
             for wrong in _other_places(link):
                 key = (wrong.location.path, wrong.location.line)
@@ -56,13 +55,16 @@ def _is_simulated(robot: KnownRobot) -> bool:
 
 
 def _without_mass(robot: Robot) -> Iterator[Mismatch]:
-    """Yield the first joint that moves links which have no mass, with what is fixed to them."""
+    """Yield the first joint that moves links which have no mass, with what is fixed to them.
+
+    A robot without any mass is a sketch.
+    """
     fixed: dict[str, list[Joint]] = {}
     for joint in robot.joints:
         if joint.type == "fixed":
             fixed.setdefault(joint.parent, []).append(joint)
     with_mass = {link.name for link in robot.links if link.inertial and link.inertial.mass > 0.0}
-    for joint in robot.joints:
+    for joint in robot.joints if with_mass else ():
         if not joint.has_position:
             continue
         carried = [joint.child]

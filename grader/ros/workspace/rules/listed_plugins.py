@@ -6,7 +6,7 @@ from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rules.names import Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import PLUGIN_LISTED
 
 _COSTMAPS = ("global_costmap", "local_costmap")
@@ -22,7 +22,6 @@ def listed_plugin_facts(workspace: Workspace) -> Iterator[Fact]:
     for _, tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
             if keys and keys[-1] in _COSTMAPS:
-                yield Compared("parameters")
                 yield from _unlisted(keys[-1], section)
 
 

@@ -8,7 +8,7 @@ from grader.base.text import enumerated, quoted
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.workspace.model.known_robots import KnownRobot
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rules.names import Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import LINK_SIDE, WHEEL_SIDE
 from grader.ros.workspace.rules.wheel_values import wheel_value_facts
 
@@ -27,9 +27,7 @@ def side_facts(workspace: Workspace) -> Iterator[Fact]:
     for robot in workspace.robots.known:
         pairs = [*_pairs(robot)]
         workspace.charge(_OF_PAIR * len(pairs))
-        if pairs:
-            yield Compared("values")
-            wrong += _exchanged(robot, pairs)
+        wrong += _exchanged(robot, pairs)
     if wrong:
         facts = wheel_value_facts(workspace)
         if not any(isinstance(fact, Mismatch) and fact.rule is WHEEL_SIDE for fact in facts):

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from grader.base.text import enumerated, quoted
 from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.arguments import includes_others
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import LAUNCH_ARGUMENT_USED, XACRO_ARGUMENT_USED
 
@@ -49,8 +50,13 @@ def _of_launch_files(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _of_xacro(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield the arguments of xacro that no file of xacro in the workspace uses."""
+    """Yield the arguments of xacro that no file of xacro in the workspace uses.
+
+    A file of another package that one includes may use any.
+    """
     sources = [*workspace.robots.xacro_sources]
+    if any(includes_others(workspace, source) for source in sources):
+        return
     used = set[str]()
     for source in sources:
         for match in _XACRO_USED.finditer(source.text):

@@ -10,7 +10,7 @@ class Alarm(Node):
         self.create_subscription(Bool, "obstacle", self.on_obstacle, 10)
 
     def on_obstacle(self, message):
-        if message.data:
+        if message.data and self.get_parameter("volume").value > 0:
             self.get_logger().warning("obstacle")
 
 

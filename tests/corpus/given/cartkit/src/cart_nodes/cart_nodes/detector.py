@@ -8,7 +8,7 @@ class Detector(Node):
     def __init__(self):
         super().__init__("detector")
         self.declare_parameter("threshold", 0.5)
-        self.declare_parameter("camera_frame", "camera_link")
+        self.frame = self.declare_parameter("camera_frame", "camera_link").value
         self.threshold = self.get_parameter("threshold").value
         self.found = self.create_publisher(Bool, "obstacle", 10)
         self.create_subscription(Image, "image", self.on_image, 10)
