@@ -120,7 +120,7 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
     moving = _moving_joints(workspace)
     if not publishers or not moving or workspace.robots.may_be_others:
         return
-    if _may_publish_joint_states(workspace):
+    if may_publish_joint_states(workspace):
         return
     first = moving[0]
     message = (
@@ -142,7 +142,7 @@ def _moving_joints(workspace: Workspace) -> list[Joint]:
     return moving
 
 
-def _may_publish_joint_states(workspace: Workspace) -> bool:
+def may_publish_joint_states(workspace: Workspace) -> bool:
     """Return whether something may publish the positions of the joints."""
     for _, node in workspace.launches.nodes:
         if program_row(node.package, node.executable).publishes_joint_states:

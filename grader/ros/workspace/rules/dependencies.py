@@ -25,6 +25,14 @@ from grader.ros.workspace.rules.used_packages import PackageUse, used_packages
 _OTHER_NAMES = ("lib{}-dev", "{}-dev", "lib{}", "{}_vendor", "python3-{}", "python-{}")
 
 _BUILD_TOOL = "ament_cmake"
+# What ament_lint_common brings: its package.xml of jazzy.
+_LINTERS = frozenset(
+    f"ament_cmake_{name}"
+    for name in (
+        *("copyright", "cppcheck", "cpplint", "flake8"),
+        *("lint_cmake", "pep257", "uncrustify", "xmllint"),
+    )
+)
 _FOR_RUN = frozenset({"exec_depend", "test_depend", "doc_depend"})
 _FOR_BUILD = frozenset({"build_depend", "buildtool_depend"})
 _WITH_NODES = ("rclcpp", "rclcpp_action", "rclcpp_components", "rclcpp_lifecycle", "tf2_ros")
@@ -110,7 +118,8 @@ def _undeclared(
             meant = None  # another package
         guess = _guess(package, manifest, name, meant)
         bringer = brought.get(name) or (found_with.get(name) if use.is_built else None)
-        if use.is_for_tests and bringer is not None:
+        is_linter = name in _LINTERS and "ament_lint_common" in declared
+        if use.is_for_tests and (is_linter or bringer is not None):
             continue
         message = f"package.xml of {package.name!r} does not declare {name!r}, which "
         if bringer is None:

@@ -10,6 +10,7 @@ from grader.ros.workspace.graph.graph import graph_of
 from grader.ros.workspace.graph.started_controllers import spawned_controllers
 from grader.ros.workspace.graph.unread_ends import may_publish_type
 from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.companions import may_publish_joint_states
 from grader.ros.workspace.rules.names import Compared, Fact, warning
 from grader.ros.workspace.rules.rule_table import SIMULATED_JOINTS
 
@@ -20,7 +21,8 @@ _SIMULATION = "ros_gz_sim"
 def simulated_joint_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield launch files that create a robot with wheels in Gazebo without their positions.
 
-    Only if all that the launch file starts is known, and each robot has such joints.
+    Only if all that the launch file starts is known, and each robot has such joints. Where nothing
+    in the workspace publishes positions, the rule joint-states says that.
     """
     moving: list[Joint] = []
     for robot in workspace.robots.known:
@@ -28,7 +30,8 @@ def simulated_joint_facts(workspace: Workspace) -> Iterator[Fact]:
         if not joints:
             return
         moving += joints
-    if workspace.robots.may_be_others:
+    is_said = not (workspace.launches.unknown_nodes or may_publish_joint_states(workspace))
+    if workspace.robots.may_be_others or is_said:
         return
     for number, (_, launch) in enumerate(workspace.launches.roots if moving else ()):
         publishers = [node for node in launch.nodes if node.executable == STATE_PUBLISHER]

@@ -11,6 +11,7 @@ from grader.ros.workspace.rules.names import Compared, Fact, warning
 from grader.ros.workspace.rules.rule_table import PARAMETER_READ
 
 _TEXT = re.compile(r"[\"']([\w./]++)[\"']")
+_STATEMENT = "self.declare_parameter("  # begins a declaration whose value nothing uses
 # With one of these, code may read parameters whose names are not written.
 _READS_OTHERS = (
     *("get_parameters(", "get_parameters_by_prefix", "_parameters", "describe_parameters"),
@@ -36,7 +37,9 @@ def unread_parameter_facts(workspace: Workspace) -> Iterator[Fact]:
             counts.update(_TEXT.findall(text))
         lines = {path: text.split("\n") for path, text in texts.items()}
         for at, name in declared.items():
-            if counts[name] == 1 and _is_statement(lines[at.path][at.line - 1].strip()):
+            line = lines[at.path][at.line - 1].strip()
+            is_used = line.endswith((".value", "_value")) or not line.startswith(_STATEMENT)
+            if counts[name] == 1 and not is_used:
                 message = f"nothing reads the parameter {name!r}, which is declared here"
                 yield warning(PARAMETER_READ, message, at)
 
@@ -50,8 +53,3 @@ def _declared_in(code: PackageNodes, texts: Mapping[str, str]) -> dict[Location,
             if parameter.is_declared and parameter.name is not None and is_here:
                 declared[parameter.location] = parameter.name
     return declared
-
-
-def _is_statement(line: str) -> bool:
-    """Return whether a declaration is a statement whose value nothing uses."""
-    return line.startswith("self.declare_parameter(") and not line.endswith((".value", "_value"))
