@@ -94,9 +94,8 @@ def _in_other_language(submission: Submission, package: Package, ending: str) ->
     file names it.
     """
     paths = [path for path in package.launch_files if not path.startswith("test/")]
-    before = posixpath.splitext(paths[0])[1] if len(paths) == 1 else ""
-    is_named = bool(before) and paths[0].endswith(f".launch{before}")
-    if not is_named or before not in _ENDING_BY_LANGUAGE.values() or before == ending:
+    before = _language_ending(paths[0]) if len(paths) == 1 else ""
+    if before in ("", ending):
         return {}
     launch = package.launch(paths[0])
     manifest = read_text(submission, package.path(MANIFEST))
@@ -111,14 +110,26 @@ def _in_other_language(submission: Submission, package: Package, ending: str) ->
     build = package.path(CMAKE if package.is_cmake else SETUP)
     if _is_named_elsewhere(submission, path, build):
         return {}
-    if ending == ".xml":
-        text = _launch_xml(known)
-    elif ending == ".py":
-        text = _launch_python(known)
-    else:  # JSON is YAML
-        text = json.dumps({"launch": [{"node": node} for node in known]}, indent=2)
+    text = _launch_text(known, ending)
     built = read_text(submission, build).replace(f".launch{before}", f".launch{ending}")
     return {path: None, f"{path.removesuffix(before)}{ending}": text, build: built}
+
+
+def _language_ending(path: str) -> str:
+    """Return the ending of a launch file in a language that is written here, else nothing."""
+    ending = posixpath.splitext(path)[1]
+    is_known = ending in _ENDING_BY_LANGUAGE.values()
+    return ending if is_known and path.endswith(f".launch{ending}") else ""
+
+
+def _launch_text(nodes: Sequence[Mapping[str, Any]], ending: str) -> str:
+    """Return a launch file that starts nodes, in the language of an ending."""
+    if ending == ".xml":
+        return _launch_xml(nodes)
+    if ending == ".py":
+        return _launch_python(nodes)
+    # JSON is YAML.
+    return json.dumps({"launch": [{"node": node} for node in nodes]}, indent=2)
 
 
 def _is_named_elsewhere(submission: Submission, path: str, build: str) -> bool:

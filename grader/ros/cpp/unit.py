@@ -210,20 +210,13 @@ def is_conditional(node: CppNode, until: CppNode) -> bool:
 def called_name(call: CppNode) -> str:
     """Return the name of what a call calls, as it is written, without the object before it."""
     if call.called is None:
-        call.called = _called_name(call)
+        name = call.child("function")
+        if name is not None and name.kind == "field_expression":
+            name = name.child("field")
+            if name is not None and name.kind == "dependent_name" and name.children:
+                name = name.children[0]  # behind the word `template`
+        call.called = plain_name(name) if name is not None else ""
     return call.called
-
-
-def _called_name(call: CppNode) -> str:
-    function = call.child("function")
-    if function is None:
-        return ""
-    if function.kind == "field_expression":
-        field = function.child("field")
-        if field is not None and field.kind == "dependent_name" and field.children:
-            field = field.children[0]  # behind the word `template`
-        return plain_name(field) if field is not None else ""
-    return plain_name(function)
 
 
 def arguments_of(call: CppNode) -> list[CppNode]:

@@ -7,7 +7,7 @@ it.
 
 import ast
 from ast import AST
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 # Attributes in which no other node is.
 _PLAIN = frozenset(
@@ -16,11 +16,17 @@ _PLAIN = frozenset(
         *("module", "op", "ops", "rest", "simple", "tag", "type_comment", "type_ignores"),
     )
 )
-_FIELDS: Mapping[type[AST], tuple[str, ...]] = {
-    each: tuple(field for field in each._fields if field not in _PLAIN)
-    for each in vars(ast).values()
-    if isinstance(each, type) and issubclass(each, AST)
-} | {ast.Constant: ()}
+
+
+def _fields_with_nodes() -> Iterator[tuple[type[AST], tuple[str, ...]]]:
+    """Yield the kinds of nodes, each with its attributes in which other nodes may be."""
+    for kind in vars(ast).values():
+        if isinstance(kind, type) and issubclass(kind, AST):
+            fields = tuple(field for field in kind._fields if field not in _PLAIN)
+            yield kind, fields if kind is not ast.Constant else ()
+
+
+_FIELDS: Mapping[type[AST], tuple[str, ...]] = dict(_fields_with_nodes())
 
 
 def children(node: AST) -> list[AST]:
