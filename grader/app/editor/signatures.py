@@ -8,7 +8,7 @@ from grader.app.editor.look import Look
 from grader.app.editor.places import TextPlace
 
 _CALL = re.compile(r"<xacro:(?P<macro>[\w.-]++)(?P<given>\s[^<>]*+)\Z")
-_GIVEN = re.compile(r"(?P<name>[\w.-]+)\s*=\s*(?P<value>[\"'])?")
+_GIVEN = re.compile(r"(?<![\w.-])(?P<name>[\w.-]++)\s*+=\s*+(?P<value>[\"'])?")
 
 
 def signature(look: Look, place: TextPlace) -> lsp.SignatureHelp | None:

@@ -9,7 +9,10 @@ _MACRO = re.compile(r"<xacro:macro\s(?P<attributes>[^<>]*+)>")
 _NAME = re.compile(r"\bname\s*=\s*[\"'](?:xacro:)?(?P<value>[^\"'<]*)[\"']")
 _PARAMETERS = re.compile(r"\bparams\s*=\s*[\"'](?P<value>[^\"<]*)[\"']")
 # A default may hold spaces in quotes, brackets or an expression.
-_PARAMETER = re.compile(r"(?:[^\s'\"\[{(]|'[^']*+'|\"[^\"]*+\"|\[[^\]]*+\]|\{[^}]*+\}|\([^)]*+\))+")
+_PARAMETER = re.compile(
+    r"(?:[^\s'\"\[{(]|'[^']*+(?:'|\Z)|\"[^\"]*+(?:\"|\Z)|\[[^\]]*+(?:\]|\Z)|\{[^}]*+(?:\}|\Z)"
+    r"|\([^)]*+(?:\)|\Z))++"
+)
 _ENDING = ".xacro"
 
 

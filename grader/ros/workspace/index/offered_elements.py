@@ -13,7 +13,7 @@ _STARTED_ATTRIBUTE = re.compile(
     r"<(?P<tag>[\w:.-]++)(?P<before>\s(?:[^<>\"']|\"[^\"<]*+\"|'[^'<]*+')*+)\Z"
 )
 _STARTED_WORD = re.compile(r"\s[\w:]*\Z")
-_WRITTEN = re.compile(r"([\w:.-]+)\s*=")
+_WRITTEN = re.compile(r"(?<![\w:.-])([\w:.-]++)\s*+=")
 _MACRO = "xacro:macro"
 
 
