@@ -18,7 +18,7 @@ from grader.ros.workspace.index.renamed_graph import (
     renamed_owner,
 )
 from grader.ros.workspace.index.started_names import StartedName, started_in
-from grader.ros.workspace.index.words_left import words_left
+from grader.ros.workspace.index.words_left import files_for_parameters, words_left
 from grader.ros.workspace.index.written_names import WrittenName
 from grader.ros.workspace.offered_macros import parameters_of_macro
 from grader.ros.workspace.opened import OpenedWorkspace
@@ -26,6 +26,7 @@ from grader.ros.workspace.opened import OpenedWorkspace
 # The kinds of names for which files are searched whose words no reader knows.
 _IN_FILES = "plugin section"  # names that mean nothing in other files
 _SEARCHED = (
+    "parameter",
     "link",
     "frame",
     "joint",
@@ -103,6 +104,9 @@ class NamePlaces:
         paths: Collection[str] = self._opened.whole_tree.files
         if name.kind == _IN_FILES:
             paths = {place.location.path for place in places}
+        elif name.kind == "parameter":
+            owners = {place.owner.partition("/")[0] for place in places}
+            paths = [*files_for_parameters(self._opened.workspace, owners)]
         left = []
         for at in words_left(paths, self._opened.source, name):
             if not any(written.covers(*at[:3]) for written in named):

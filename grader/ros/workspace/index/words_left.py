@@ -4,12 +4,14 @@ A rename asks whether a file keeps the old word: then it is not certain that eve
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
 from grader.base.source import Location, Source
 from grader.ros.workspace.index.written_names import WrittenName
+from grader.ros.workspace.model.own_code import CPP_ENDINGS
+from grader.ros.workspace.model.workspace import Workspace
 
 _STRING = r"\"(?:[^\"\\\n]|\\.)*+\"|'(?:[^'\\\n]|\\.)*+'"
 # What a text of Python or C++ surely is no link, joint, topic or node by.
@@ -35,7 +37,9 @@ _WITHOUT_NAMES = ("setup.py", "package.xml", "plugins.xml")
 _INSERTED = re.compile(r"\{[^{}]*+\}")
 _NAME = re.compile(rf"(?:[\w~/.-]++|{_INSERTED.pattern})++")
 _MIN_LETTERS = 3  # of a name that an f-string makes
-_KEYS = ("controller", "node")  # kinds that may be a key of YAML
+_KEYS = ("controller", "node", "parameter")  # kinds that may be a key of YAML
+_EVERY_NODE = "/**"  # a section of a parameter file
+_MAX_YAML = 512 * 1024  # bytes
 
 
 class _WrittenText(NamedTuple):
@@ -66,6 +70,22 @@ def words_left(
                 at = _place_in(word.text, name)
                 if at >= 0:
                     yield source.at(word.start + at)
+
+
+def files_for_parameters(workspace: Workspace, packages: Collection[str]) -> Iterator[str]:
+    """Yield the files that may name a parameter of the nodes of some packages.
+
+    These are the code of the packages, and parameter files with a section for every node.
+    """
+    for package in workspace.packages:
+        for path in package.tree.files:
+            if path.endswith((".py", *CPP_ENDINGS)) and path not in package.launch_files:
+                if package.name in packages:
+                    yield package.path(path)
+            elif path.endswith((".yaml", ".yml")):
+                data = package.tree.read(path, _MAX_YAML)
+                if data is not None and _EVERY_NODE.encode() in data:
+                    yield package.path(path)
 
 
 def _words(pattern: re.Pattern[str], text: str) -> Iterator[_WrittenText]:
