@@ -314,6 +314,8 @@ def test_renames_in_all_files(
         ([(_NODES, "filter:", "/**:")], (_FILTER, '"min_range"', 2, "low"), r"nodes.yaml:3 would keep 'min_range'"),
         ([("cart_bringup/config/nav.yaml", "", "a:\n  ros__parameters:\n    progress_checker_plugins: [fast]\n    one: fast\n    fast:\n      plugin: nav2_controller::SimpleProgressChecker\n")],
          ("cart_bringup/config/nav.yaml", "[fast]", 2, "slow"), r"nav.yaml:4 would keep 'fast'"),
+        ([(_LAUNCH, '"limit": 0.5', '"limit": 0.5, "use_sim_time": True')], (_LAUNCH, '"use_sim_time": True', 3, "simulated"),
+         r"no code declares the parameter 'use_sim_time'"),
         ((), (_LAUNCH, '"/cmd_vel"', 3, "obstacle"), r"there is a topic 'obstacle' already, at .*driver.py:11"),
         ((), (_LAUNCH, '"cart_nodes"', 3, "other"), r"a package is not renamed here"),
         ((), (_LAUNCH, 'executable="driver"', 13, "other"), r"a program is not renamed here"),

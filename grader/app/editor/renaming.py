@@ -59,6 +59,8 @@ def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
     if not _VALID.fullmatch(new):
         raise CannotRenameError(f"{new!r} is no name: use letters, digits and underscores")
     same = look.names.same(name)
+    if name.kind == "parameter" and all(other.role == "use" for other in same):
+        raise CannotRenameError(f"no code declares the parameter {name.name!r} that is read here")
     for other in look.names.named_like(same, new):
         where = other.location.file_and_line
         raise CannotRenameError(f"there is a {other.kind} {new!r} already, at {where}")
