@@ -114,11 +114,11 @@ def test_a_macro_that_is_called_twice_has_one_mistake(tmp_path: Path) -> None:
 def test_problems_of_one_cause_are_one_diagnostic(tmp_path: Path) -> None:
     """What a build does not install is said once, at the first file that is missing, with the places of the others."""
     root = ROOT / "submissions/diffdrive"
-    found = 0
+    joined = 0
     for folder in sorted(root.iterdir()):
         for _, shown in _diagnostics(folder) if folder.is_dir() else ():
             others = [
                 each for each in shown.related_information or () if "installs no" in each.message
             ]
-            found += shown.code == "REF001" and bool(others)
-    assert found
+            joined += shown.code == "REF001" and bool(others)
+    assert joined

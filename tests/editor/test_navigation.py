@@ -37,9 +37,9 @@ async def _defined(one: Editor, path: str, text: str, inside: int) -> list[str]:
     """Return where the name at a text is defined, as path:line."""
     at = one.position(path, text, inside=inside)
     asked = lsp.DefinitionParams(one.document(path), at)
-    found = await one.client.text_document_definition_async(asked)
-    assert isinstance(found, list | tuple)
-    return [_place(one, each) for each in found if isinstance(each, lsp.Location)]
+    located = await one.client.text_document_definition_async(asked)
+    assert isinstance(located, list | tuple)
+    return [_place(one, each) for each in located if isinstance(each, lsp.Location)]
 
 
 def _place(one: Editor, location: lsp.Location) -> str:

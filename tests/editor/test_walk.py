@@ -119,9 +119,9 @@ async def _hover(one: Editor, document: lsp.TextDocumentIdentifier, at: lsp.Posi
 
 
 async def _definition(one: Editor, document: lsp.TextDocumentIdentifier, at: lsp.Position) -> str:
-    found = await one.client.text_document_definition_async(lsp.DefinitionParams(document, at))
-    assert isinstance(found, list | tuple)
-    return _places(one, [each for each in found if isinstance(each, lsp.Location)])
+    located = await one.client.text_document_definition_async(lsp.DefinitionParams(document, at))
+    assert isinstance(located, list | tuple)
+    return _places(one, [each for each in located if isinstance(each, lsp.Location)])
 
 
 async def _references(one: Editor, document: lsp.TextDocumentIdentifier, at: lsp.Position) -> str:
