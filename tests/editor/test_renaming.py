@@ -277,6 +277,7 @@ def _changed_cart(folder: Path, edits: Sequence[tuple[str, str, str]]) -> Path:
         # parameters
         ((), (_WATCH, '"limit"', 2, "bound"), {"cart.launch.py": [53], "watch.cpp": [14, 22]}),
         ((), (_NODES, "min_range", 2, "low"), {"filter.py": [10, 16], "nodes.yaml": [3]}),
+        ([(_NODES, "filter:", "/**:")], (_FILTER, '"min_range"', 2, "low"), {"filter.py": [10, 16], "nodes.yaml": [3]}),
         ([(_XML, "", _FROM_XML)], (_FILTER, '"max_range"', 2, "high"), {"cart.launch.py": [46], "filter.py": [11, 17], "more.launch.xml": [3]}),
         ([(_LAUNCH, 'parameters=[{"limit": 0.5}]', 'arguments=["--ros-args", "-p", "limit:=0.5"]')],
          (_WATCH, '"limit"', 2, "bound"), {"cart.launch.py": [53], "watch.cpp": [14, 22]}),
@@ -311,7 +312,6 @@ def test_renames_in_all_files(
         ([(_FILTER, 'self.get_parameter("min_range").value', "read(self)"), (_FILTER, "import rclpy\n", "import rclpy\n\nfrom cart_nodes.helper import read\n"),
           ("cart_nodes/cart_nodes/helper.py", "", 'def read(node):\n    return node.get_parameter("min_range").value\n')],
          (_FILTER, '"min_range"', 2, "low"), r"helper.py:2 would keep 'min_range'"),
-        ([(_NODES, "filter:", "/**:")], (_FILTER, '"min_range"', 2, "low"), r"nodes.yaml:3 would keep 'min_range'"),
         ([("cart_bringup/config/nav.yaml", "", "a:\n  ros__parameters:\n    progress_checker_plugins: [fast]\n    one: fast\n    fast:\n      plugin: nav2_controller::SimpleProgressChecker\n")],
          ("cart_bringup/config/nav.yaml", "[fast]", 2, "slow"), r"nav.yaml:4 would keep 'fast'"),
         ([(_LAUNCH, '"limit": 0.5', '"limit": 0.5, "use_sim_time": True')], (_LAUNCH, '"use_sim_time": True', 3, "simulated"),

@@ -94,6 +94,7 @@ def read_names(workspace: Workspace, facts: Iterable[Fact]) -> WorkspaceNames:
         names += PackageNames(workspace, source_of).names()
     with suppress(NotDecided):
         names += ends.nodes()
+        names += ends.parameters()
         for end in (*ends.frames(), *ends.names()):
             if isinstance(end, ComputedName):
                 computed.append(end)

@@ -146,6 +146,29 @@ class GraphNames:
             if source is not None and span is not None:
                 yield written_name(source, span, "node", name, "definition")
 
+    def parameters(self) -> Iterator[WrittenName]:
+        """Yield the parameters that nodes declare and are given, also in a section for every node.
+
+        Such a section is one place of the parameters of several nodes.
+        """
+        for node, facts, launch in self._own_nodes():
+            declared = {parameter.name for parameter in facts.parameters}
+            if launch < 0 or not declared:
+                continue
+            package, _ = self._workspace.launches.roots[launch]
+            name = self._workspace.code.name_of(node) or facts.name or ""
+            given = self._workspace.parameters.read_given(package, node, name)
+            for parameter, value in given.values.items():
+                if parameter in declared:
+                    at = value.named_at or value.location
+                    yield from self._parameter(at, parameter, f"{node.package}/{node.executable}")
+
+    def _parameter(self, at: Location, name: str, owner: str) -> Iterator[WrittenName]:
+        source = self._source_of(at.path)
+        span = span_of_name(source, at, "parameter", name, "use") if source is not None else None
+        if source is not None and span is not None and source.text[slice(*span)] == name:
+            yield written_name(source, span, "parameter", name, "use", owner)
+
     def frames(self) -> _Names:
         """Yield the frames that code names, and those that it makes of parts."""
         for code in self._workspace.code.by_package.values():

@@ -14,6 +14,7 @@ from grader.ros.workspace.model.workspace import Workspace
 
 _ENDS = ("topic", "service", "action")
 _NODES = ("node", "controller")
+_SECTIONS = ("controller", "plugin section")  # which are parts of names of parameters
 _FRAMES = ("link", "frame")
 _Row = tuple[str, ...]
 
@@ -97,6 +98,8 @@ def _rows(
     for node in graph.nodes:
         program = f"{number} {node.kind} {node.location.path}:{node.location.line}"
         yield program, name("node", node.name)
+        for given in node.parameters:
+            yield program, "parameter", name(f"parameter of {node.program}", given.name)
         for end in node.ends:
             yield program, end.kind, name(end.carrier, end.name)
     for transform in graph.transforms:
@@ -114,10 +117,22 @@ def _renaming(places: Collection[WrittenName], new: str) -> _Renaming:
     kinds = {place.kind for place in places}
     full = {(place.kind, place.owner): renamed_owner(place, new) for place in places}
     old = {place.name for place in places}
+    programs: set[str] = set()
+    for place in places:
+        if place.kind == "parameter":
+            package, _, executable = place.owner.partition("/")
+            program = executable if package == executable else place.owner
+            programs.add(f"parameter of {program}")
 
     def rename(kind: str, name: str) -> str:
         if kind == "frame":
             return new if name in old and not kinds.isdisjoint(_FRAMES) else name
+        if kind.startswith("parameter of "):
+            if name in old:
+                return new if kind in programs else name
+            if kinds.isdisjoint(_SECTIONS):
+                return name
+            return ".".join(new if part in old else part for part in name.split("."))
         if not kinds.isdisjoint(_NODES):
             parts = name.split("/")
             last = len(parts) if kind == "node" else len(parts) - 1
