@@ -67,6 +67,10 @@ _STATIC = (
     'Node(package="tf2_ros", executable="static_transform_publisher", arguments=["--frame-id", '
     f'"lidar_link", "--child-frame-id", "extra"]),\n            {_DRIVER_NODE}'
 )
+_FILTERED = (
+    'Node(package="robot_localization", executable="ekf_node", name="ekf_filter_node", '
+    f'parameters=[os.path.join(share, "config", "ekf.yaml")]),\n            {_DRIVER_NODE}'
+)
 _LINK_NAME = 'link name="lidar_link"'
 _REMAPPED = 'remappings=[("/wheel_controller/cmd_vel", "/cmd_vel")],'
 _WHEELS = '"wheel_controller", "joint_state_broadcaster"]'
@@ -265,6 +269,10 @@ def _changed_cart(folder: Path, edits: Sequence[tuple[str, str, str]]) -> Path:
          (_ROBOT, _LINK_NAME, 12, "laser"), {"cart.launch.py": [49], "cart.urdf.xacro": [26, 29, 45, 48], "filter.py": [21], "watch.cpp": [26]}),
         ([(_FILTER, 'frame_id = "lidar_link"', 'frame_id = "lidar_link"  # the "lidar_link"'), ("README.md", "", "the frame `lidar_link`")],
          (_ROBOT, _LINK_NAME, 12, "laser"), {"cart.urdf.xacro": [26, 29, 45, 48], "filter.py": [21], "watch.cpp": [26]}),
+        ([("cart_bringup/config/ekf.yaml", "", "ekf_filter_node:\n  ros__parameters:\n    base_link_frame: base_link\n    odom0: /wheel_controller/odom\n"),
+          (_LAUNCH, _DRIVER_NODE, _FILTERED)],
+         (_ROBOT, 'link name="base_link"', 12, "chassis"),
+         {"ekf.yaml": [3], "controllers.yaml": [15], "cart.urdf.xacro": [3, 11, 18, 25], "driver.py": [15], "watch.cpp": [26]}),
         # controllers and nodes, also in names of topics
         ((), (_LAUNCH, '"wheel_controller"', 2, "wheels"), {"cart.launch.py": [39, 40], "controllers.yaml": [6, 9]}),
         ([(_DRIVER, '"/cmd_vel"', '"/wheel_controller/cmd_vel"'), (_LAUNCH, _REMAPPED, "")],

@@ -96,7 +96,9 @@ def _check_uses(look: Look, after: Look, same: Collection[WrittenName], new: str
         raise CannotRenameError(message)
     if len(after.names.named_like(same, new)) != len(same):
         raise CannotRenameError("not all places that use this name are known")
-    expected, launched = look.names.graph_under(same, new), after.names.graph_under((), "")
+    kind = next(iter(same)).kind
+    expected = look.names.graph_under(kind, same, new)
+    launched = after.names.graph_under(kind, (), "")
     for row in (launched - expected) or (expected - launched):
         where = row[0].rpartition(" ")[2]
         message = f"not all places that use this name are known: {where} would have {row[-1]!r}"

@@ -12,6 +12,7 @@ from grader.ros.workspace.index.offered_elements import offered_elements
 from grader.ros.workspace.index.offered_names import offered_names
 from grader.ros.workspace.index.offered_parameters import parameter_text, parameters_below
 from grader.ros.workspace.index.renamed_graph import (
+    PARAMETER,
     computed_like,
     graph_under,
     open_ends,
@@ -24,6 +25,7 @@ from grader.ros.workspace.offered_macros import parameters_of_macro
 from grader.ros.workspace.opened import OpenedWorkspace
 
 # The kinds of names for which files are searched whose words no reader knows.
+_GIVEN = ("parameter", "controller", "plugin section")  # kinds that name parameters
 _IN_FILES = "plugin section"  # names that mean nothing in other files
 _SEARCHED = (
     "parameter",
@@ -88,12 +90,18 @@ class NamePlaces:
         computed = [*computed_like(self._names.computed, places)]
         return computed or [*open_ends(self._opened.workspace, places)]
 
-    def graph_under(self, places: Collection[WrittenName], new: str) -> Counter[tuple[str, ...]]:
+    def graph_under(
+        self, kind: str, places: Collection[WrittenName], new: str
+    ) -> Counter[tuple[str, ...]]:
         """Return what runs after each launch, with another name in place of that of some places."""
         paths = {place.location.path for place in places}
         names = {place.name for place in places}
         named = {each.location.path for each in self._names.names if each.name in names}
-        return graph_under(self._opened.workspace, places, new, named - paths)
+        rows = graph_under(self._opened.workspace, places, new, named - paths)
+        if kind not in _GIVEN:  # only parameters that differ from their defaults are rows
+            for row in [row for row in rows if PARAMETER in row]:
+                del rows[row]
+        return rows
 
     def words_left(self, places: Collection[WrittenName]) -> list[Location]:
         """Return where files have the name of some places, and no reader says what it is there."""

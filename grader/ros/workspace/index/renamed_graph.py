@@ -12,6 +12,7 @@ from grader.ros.workspace.index.names_in_graph import ComputedName
 from grader.ros.workspace.index.written_names import WrittenName
 from grader.ros.workspace.model.workspace import Workspace
 
+PARAMETER = "parameter"  # the kind of a row
 _ENDS = ("topic", "service", "action")
 _NODES = ("node", "controller")
 _SECTIONS = ("controller", "plugin section")  # which are parts of names of parameters
@@ -99,7 +100,7 @@ def _rows(
         program = f"{number} {node.kind} {node.location.path}:{node.location.line}"
         yield program, name("node", node.name)
         for given in node.parameters:
-            yield program, "parameter", name(f"parameter of {node.program}", given.name)
+            yield program, PARAMETER, name(f"parameter of {node.program}", given.name)
         for end in node.ends:
             yield program, end.kind, name(end.carrier, end.name)
     for transform in graph.transforms:
