@@ -170,7 +170,7 @@ WEIGHTS = {
     "ros.python": 28_950,  # the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
-    "ros.workspace": 152_500,  # ways of messages, and transforms of code, for checks; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file; what included files and components leave open; for editors, where topics, packages, programs, files, types and plug-ins are written, and what a rename has to lead to
+    "ros.workspace": 152_900,  # ways of messages, and transforms of code, for checks; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file; what included files and components leave open; for editors, where topics, packages, programs, files, types and plug-ins are written, and what a rename has to lead to
     "ros.xacro": 28_600,  # xacro:attribute, letters outside of ASCII; functions that do one thing
     "ros.xml": 13_400,  # the attributes of broken tags, end tags of macros, the attributes of newer versions of URDF
     "": 400,
