@@ -9,7 +9,7 @@ from pathlib import Path
 from threading import Thread
 from typing import Any, NamedTuple
 
-from grader.app.commands.view_server import RobotPages, follow_files
+from grader.app.commands.view_server import MAX_LOG_BODY, RobotPages, follow_files
 from grader.app.commands.viewed_robots import ViewRequest
 from grader.files.reading import URDF_LIMIT
 from grader.report.local_server import LocalServer
@@ -43,7 +43,7 @@ class Page(NamedTuple):
         return {link["name"]: link["shapes"][0]["size"] for link in links if link["shapes"]}
 
     def part(self, name: str) -> str:
-        """Return a part of what the page of a report does not have: `broken`, `robots`, `arguments` or `notes`."""
+        """Return a part of what the page of a report does not have: `broken`, `robots`, `arguments`, `answers` or `notes`."""
         found = re.search(rf'(?s)id="view-{name}"[^>]*>(.*?)\n</(?:div|nav|form)>', self.text)
         assert found is not None, name
         return found[1].strip()
@@ -72,6 +72,10 @@ class View(NamedTuple):
                 return Page(found["page"])
         raise AssertionError("nothing has changed")
 
+    def explain(self, log: str) -> int:
+        """Paste an output of a terminal as the page does, and return the status."""
+        return self.server.post("log", {"do": "explain", "log": log}).status
+
     def try_arguments(self, **values: str) -> int:
         """Try arguments of xacro as the page does, and return the status."""
         return self.server.post("arguments", {"do": "try", "arguments": values}).status
@@ -82,7 +86,7 @@ def viewing(path: Path, rubric: str = "", arg: Sequence[str] = ()) -> Iterator[V
     """Yield a view that follows the files, in other threads."""
     pages = RobotPages()
     versions = follow_files(ViewRequest(str(path), rubric, arg, URDF_LIMIT), pages)
-    with LocalServer(pages) as server:
+    with LocalServer(pages, max_body=MAX_LOG_BODY) as server:
         next(versions)
         serving = Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
         following = Thread(target=deque, args=(versions, 0))

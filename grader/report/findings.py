@@ -39,6 +39,7 @@ class Finding(NamedTuple):
     location: Location
     related: Location | None = None  # of what it is compared with
     fixes: Fixes = NO_FIXES  # of a problem, for editors alone
+    cause: str = ""  # what it has in common with others that one mistake makes; for editors, too
 
 
 def findings_in_inspection(inspection: Inspection) -> list[Finding]:
@@ -57,7 +58,9 @@ def finding_of_problem(problem: Problem) -> Finding:
     page = f"{DOCUMENTATION}problems.html#{kind.code.lower()}"
     rule = FindingKind(kind.code, kind.title, explanation_of(kind), page, problem.rule)
     message = printable(problem.message) + calls_text(where)
-    return Finding(rule, kind.severity, message, where, problem.related, problem.fixes)
+    return Finding(
+        rule, kind.severity, message, where, problem.related, problem.fixes, problem.cause
+    )
 
 
 def place_in_repository(finding: Finding, base: Base) -> tuple[str, Location | None]:

@@ -30,6 +30,7 @@ EFFECTS = {
 }
 
 
+NO_FAILURE = "no line of the log says that something fails"
 _NO_BASE = Base(is_outside=True)
 
 
@@ -163,6 +164,15 @@ def _first_rows(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
     if rest:
         return [*shown, (f"... and {rest} more", " (--format json lists all)")]
     return shown
+
+
+def log_line(answer: "LogAnswer") -> str:
+    """Return what is said of a message of a log, in one line."""
+    place = f"line {answer.line} of the log"
+    if answer.location is not None:
+        where = printable(answer.location.file_and_line)
+        return f"{where} explains {place}: {printable(answer.message)}"
+    return f"{place}: {printable(answer.message)}"
 
 
 def effect(inspection: Inspection) -> str:

@@ -75,9 +75,12 @@ class LocalServer(ThreadingTCPServer):
     request_queue_size = 64
 
     def __init__(
-        self, application: Callable[[tuple[str, ...], bytes | None], Response], port: int = 0
+        self,
+        application: Callable[[tuple[str, ...], bytes | None], Response],
+        port: int = 0,
+        max_body: int = MAX_BODY,
     ) -> None:
-        self.application = application
+        self.application, self.max_body = application, max_body
         self._open: dict[socket, None] = {}  # the oldest first
         self.token = secrets.token_urlsafe(_TOKEN_BYTES)
         try:
@@ -193,8 +196,9 @@ class _Handler(BaseHTTPRequestHandler):
         length = self.headers.get("Content-Length", "")
         if not re.fullmatch("[0-9]+", length):
             raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the header Content-Length is missing")
-        if len(length) > 9 or int(length) > MAX_BODY:
-            raise _RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"at most {MAX_BODY} bytes")
+        most = self.server.max_body
+        if len(length) > 9 or int(length) > most:
+            raise _RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"at most {most} bytes")
         return self.rfile.read(int(length))
 
     def end_headers(self) -> None:

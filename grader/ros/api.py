@@ -94,6 +94,7 @@ if TYPE_CHECKING:
     from grader.ros.workspace.graph.started_worlds import has_programs as has_programs
     from grader.ros.workspace.graph.started_worlds import started_worlds as started_worlds
     from grader.ros.workspace.graph.used_files import used_file as used_file
+    from grader.ros.workspace.index.written_names import WrittenName as WrittenName
     from grader.ros.workspace.joined_graph import JoinedGraph as JoinedGraph
     from grader.ros.workspace.joined_graph import PlacedEnd as PlacedEnd
     from grader.ros.workspace.joined_graph import join_launches as join_launches
@@ -134,6 +135,7 @@ else:
         "GRAPH_NODE_KINDS GivenValue GraphEnd GraphNode GraphTransform LaunchGraph Unread "
         "connections_in unconnected_ends",
         "workspace.graph.manual_ends": "manual_ends",
+        "workspace.index.written_names": "WrittenName",
         "workspace.joined_graph": "JoinedGraph PlacedEnd join_launches",
         "workspace.launch_graphs": "launch_files launch_graph",
         "workspace.graph.lookups": "looked_up_transforms",

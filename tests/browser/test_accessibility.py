@@ -117,3 +117,6 @@ def test_page_of_a_graph(open_page: Open, tmp_path: Path, axe: str) -> None:
         assert_accessible(page, axe)
     with viewing(ROOT / folders[0]) as view:
         assert_accessible(open_page(f"{view.server.url}graph!").page, axe)
+        page = open_page(view.server.url).page
+        page.get_by_text("Explain an output of the terminal").click()
+        assert_accessible(page, axe)

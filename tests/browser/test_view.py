@@ -204,6 +204,31 @@ def test_arguments_are_tried(open_page: Open, tmp_path: Path) -> None:
         assert page.evaluate("() => document.documentElement.scrollWidth") == NARROW["width"]
 
 
+def test_a_pasted_output_is_explained(open_page: Open, tmp_path: Path) -> None:
+    """What the files explain is first, above the robot; the text is shown as text, and stays while a file changes."""
+    root = shutil.copytree(ROOT / "submissions/diffdrive/spawner-misspelt", tmp_path / "ws")
+    log = (
+        "[x-1] Error: <img src=x onerror=alert(1)>\n[ros2_control_node-2] [ERROR] [1.2] [controller_manager]: "
+        "The 'type' param was not defined for 'diffdrive_controller'.\n"
+    )
+    with viewing(root) as view:
+        page = open_page(view.server.url, viewport=NARROW).page
+        page.get_by_text("Explain an output of the terminal").click()
+        page.locator("#view-log-text").fill(log)
+        page.get_by_role("button", name="Explain").click()
+        first = page.locator("#view-answers .card").first
+        first.wait_for()
+        assert "explains line 2 of the log" in first.inner_text()
+        assert page.locator("#view-answers img").count() == 0
+        robot_file = next(root.rglob("*.urdf.xacro"))
+        change(page, robot_file.read_text() + "\n", robot_file)
+        assert page.locator("#view-log-text").input_value() == log
+        assert page.locator("#view-answers .card").count() >= 1
+        assert page.evaluate("() => document.documentElement.scrollWidth") == NARROW["width"]
+        page.get_by_role("button", name="Clear").click()
+        page.wait_for_function("() => !document.querySelector('#view-answers .card')")
+
+
 def test_meshes_are_drawn(open_page: Open, tmp_path: Path) -> None:
     """Triangles in place of the box: half a cube shows less of its colour; they stay when the robot changes."""
     package = tmp_path / "rover"

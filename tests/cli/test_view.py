@@ -564,11 +564,13 @@ def test_a_robot_that_takes_too_long_is_reported(
     file = tmp_path / "a.urdf"
     put("<robot name='a'><link name='b'/></robot>", file)
 
-    def read_or_hang(request: ViewRequest, tried: Mapping[str, str]) -> ViewedFiles:
+    def read_or_hang(
+        request: ViewRequest, tried: Mapping[str, str], log: bytes | None
+    ) -> ViewedFiles:
         hangs = file.read_bytes() == b"hangs"
         while hangs:
             pass
-        return read_robots(request, tried)
+        return read_robots(request, tried, log)
 
     monkeypatch.setattr(view_server, "INSPECT_SECONDS", 3)
     monkeypatch.setattr(view_server, "read_robots", read_or_hang)
@@ -580,3 +582,46 @@ def test_a_robot_that_takes_too_long_is_reported(
         next(versions)
         page = pages(("",), None).body.decode()
         assert ("takes more than 3 s of processor time" in page) == is_late
+
+
+def test_a_pasted_output_is_explained(tmp_path: Path) -> None:
+    """What the files explain comes first, with its line; the text of the output is data, and stays until it is cleared."""
+    root = shutil.copytree(ROOT / "submissions/diffdrive/spawner-misspelt", tmp_path / "ws")
+    log = (
+        "[x-1] <b>Error: boom</b>\n[ros2_control_node-2] [ERROR] [1.2] [controller_manager]: "
+        "The 'type' param was not defined for 'diffdrive_controller'.\n"
+    )
+    with viewing(root) as view:
+        first = view.page()
+        assert first.part("answers") == ""
+        assert view.explain(log) == 200
+        second = view.next(first)
+        answers = second.part("answers")
+        cards = re.findall(r'<article class="card (\w+)-card">\n<p>(.*?)</p>', answers)
+        assert cards[0][0] == "error"
+        assert "explains line 2 of the log" in cards[0][1]
+        assert "diffdrive_controller" in answers
+        assert "<b>" not in answers
+        robot_file = next(root.rglob("*.urdf.xacro"))
+        robot_file.write_text(robot_file.read_text() + "\n")
+        third = view.next(second)
+        assert third.part("answers") == answers
+        assert view.server.post("log", {"do": "clear"}).status == 200
+        assert view.next(third).part("answers") == ""
+
+
+def test_a_pasted_output_of_a_graded_robot() -> None:
+    """Also the page of a rubric explains it; a text in which nothing fails is said to be one."""
+    with viewing(SAMPLES["several-mistakes"].path, "lab6") as view:
+        first = view.page()
+        assert view.explain("all is well\n") == 200
+        assert "no line of the log says that something fails" in view.next(first).part("answers")
+
+
+@pytest.mark.parametrize("sent", [{"do": "explain"}, {"do": "explain", "log": 1}, {}, []])
+def test_another_log_is_refused(file: Path, sent: object) -> None:
+    """Only what the page sends counts."""
+    with viewing(file) as view:
+        assert view.server.post("log", sent).status == 400
+        assert view.server.post("logs", {"do": "clear"}).status == 404
+        assert view.page().part("answers") == ""

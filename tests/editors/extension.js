@@ -7,7 +7,7 @@ const Module = require("node:module");
 
 const [code, text] = process.argv.slice(2);
 const situation = JSON.parse(text);
-const done = { messages: [], typed: [], opened: [], beside: [] };
+const done = { messages: [], typed: [], opened: [], beside: [], said: [] };
 const commands = {};
 
 const uri = (path) => ({ fsPath: path, toString: () => path });
@@ -20,9 +20,13 @@ const vscode = {
   commands: {
     registerCommand: (name, run) => (commands[name] = run),
     getCommands: async () => situation.commands ?? [],
-    executeCommand: async (name, ...given) => done.beside.push([name, ...given]),
+    executeCommand: async (name, ...given) => {
+      done.beside.push([name, ...given]);
+      return situation.answers ?? [];
+    },
   },
   env: {
+    clipboard: { readText: async () => situation.copied ?? "" },
     asExternalUri: async (address) => address,
     openExternal: (address) => done.opened.push(`${address}`),
   },
@@ -31,8 +35,11 @@ const vscode = {
       situation.interpreter && { activate: async () => ({ environments: python }) },
   },
   window: {
-    activeTextEditor: situation.file && { document: { uri: uri(situation.file) } },
-    createOutputChannel: () => ({ info: () => undefined }),
+    activeTextEditor: situation.file && {
+      document: { uri: uri(situation.file), getText: () => situation.selected ?? "" },
+    },
+    createOutputChannel: () => ({ info: (line) => done.said.push(line), show: () => undefined }),
+    showInputBox: async () => situation.written,
     createTerminal: () => ({
       show: () => undefined,
       sendText: (words, isRun) => done.typed.push([words, isRun]),

@@ -13,6 +13,7 @@ import pytest
 
 from grader import __version__
 from grader.app.cli.lsp import lsp
+from grader.app.editor.logs import EXPLAIN
 from tests.command_line import HANG_TIMEOUT, ROOT, run
 
 pytestmark = pytest.mark.slow
@@ -46,7 +47,7 @@ def test_versions() -> None:
 def test_the_code_stays_small() -> None:
     """It starts a server, and has no logic of its own."""
     lines = sum(len(path.read_text().splitlines()) for path in (EXTENSION / "src").iterdir())
-    assert lines <= 150
+    assert lines <= 170
 
 
 def test_commands_and_settings() -> None:
@@ -193,6 +194,23 @@ def test_the_robot_is_shown(compiled: Path, tmp_path: Path, commands: list[str])
         address = f"http://view/{shown}/--no-browser"
         beside = [[BROWSER, {"url": address, "openToSide": True}]]
         assert (done["beside"], done["opened"]) == ((beside, []) if commands else ([], [address]))
+
+
+def test_the_command_for_outputs_is_that_of_the_server() -> None:
+    """The extension asks the server with the command that it has."""
+    assert f'"{EXPLAIN}"' in CODE
+
+
+@pytest.mark.exhaustive
+@NEEDS_PACKAGE
+@pytest.mark.parametrize("source", ["selected", "copied", "written"])
+def test_an_output_is_explained(compiled: Path, tmp_path: Path, source: str) -> None:
+    """The text is that which is selected, else copied, else typed; the answers are in the output of the extension."""
+    line = "/a/b.yaml:3 explains line 1 of the log: boom"
+    situation = {"folder": str(tmp_path), "run": "grader.explainLog", "file": "/a/b.py"}
+    done = activate(compiled, {**situation, source: "boom", "answers": [line]})
+    assert done["beside"] == [[EXPLAIN, "boom"]]
+    assert done["said"][-1] == line
 
 
 @pytest.mark.exhaustive

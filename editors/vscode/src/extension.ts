@@ -25,6 +25,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
     output,
     vscode.commands.registerCommand("grader.view", showRobot),
     vscode.commands.registerCommand("grader.restart", restart),
+    vscode.commands.registerCommand("grader.explainLog", explainLog),
     vscode.workspace.onDidChangeConfiguration(
       (change) => change.affectsConfiguration("grader") && restart(),
     ),
@@ -116,6 +117,22 @@ async function offerInstallation(problem: string): Promise<void> {
     terminal.sendText(INSTALLATION, false);
   } else if (choice === settings) {
     await vscode.commands.executeCommand("workbench.action.openSettings", "grader.command");
+  }
+}
+
+/** Explains an output of a terminal: the selected text, else the clipboard, or what is typed. */
+async function explainLog(): Promise<void> {
+  const editor = vscode.window.activeTextEditor;
+  const selected = editor?.document.getText(editor.selection);
+  const prompt = "The output to explain: it stays on this machine";
+  const text =
+    selected ||
+    (await vscode.env.clipboard.readText()) ||
+    (await vscode.window.showInputBox({ prompt }));
+  if (text) {
+    const lines = await vscode.commands.executeCommand<string[]>("grader.explain", text);
+    lines.forEach((line) => output.info(line));
+    output.show(true);
   }
 }
 

@@ -30,6 +30,8 @@ from grader.report.writing import Terminal
 _POLL = 0.05  # seconds between two looks at the files, at least
 _PATIENCE = 10.0  # seconds after which a page that waits for a change asks again
 _MAX_VALUE = 1000  # characters of an argument
+MAX_LOG_BODY = 2 * 1024 * 1024  # bytes of JSON, in which a character of a log may take six
+_NOT_FROM_PAGE = "this request is not from the page"
 _GRAPH = "graph!"  # begins the address of a graph; in that of a robot ! is quoted
 _NOT_FOUND = Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
@@ -46,6 +48,7 @@ class RobotPages:
         self.is_ended = False
         self.link: Path | None = None  # the file that leads the browser to the first page
         self.tried: Mapping[str, str] = {}  # the arguments of xacro that a page gives
+        self.log: bytes | None = None  # the output of a terminal that a page gives
         self._asked = Event()  # to read again at once
         self._changed = Condition()
         self._waiting: set[Thread] = set()
@@ -89,11 +92,9 @@ class RobotPages:
 
     def __call__(self, path: tuple[str, ...], body: bytes | None) -> Response:
         """Return the response to a request."""
+        if body is not None:
+            return self._change("/".join(path), body)
         match path:
-            case ("arguments",) if body is not None:
-                return self._try_arguments(body)
-            case _ if body is not None:
-                return _NOT_FOUND
             case ("changes", number, address):
                 return self._next(number, address)
             case ("mesh", address):
@@ -106,6 +107,12 @@ class RobotPages:
                 page = self._page(address)
                 return html_response(page) if page else _NOT_FOUND
         return _NOT_FOUND
+
+    def _change(self, path: str, body: bytes) -> Response:
+        """Return the response to what a page sends."""
+        if path == "arguments":
+            return self._try_arguments(body)
+        return self._explain(body) if path == "log" else _NOT_FOUND
 
     def _next(self, number: str, address: str) -> Response:
         """Return the page of a robot as soon as there is another version than that of a number."""
@@ -138,19 +145,20 @@ class RobotPages:
             assert shown is not None  # each path is that of a robot that was read
             if shown.meshes is not None:
                 self._store.lend(shown.meshes)
+            links = []
+            for other in self._paths:
+                links.append(RobotLink(_address(other), other, other == path))
             viewing = Viewing(
                 self.number,
                 _address(path),
-                [
-                    RobotLink(_address(path_of_robot), path_of_robot, path_of_robot == path)
-                    for path_of_robot in self._paths
-                ],
+                links,
                 shown.arguments,
                 self._files.notes,
                 is_broken=not is_loaded,
                 broken=self._broken(now) if shown is not now or self._error is not None else (),
                 store=self._store,
                 meshes=shown.meshes,
+                log=self._files.log,
                 graph=_GRAPH if graphs is not None and graphs.launches else "",
             )
             return shown.render(viewing)
@@ -183,9 +191,7 @@ class RobotPages:
 
     def _try_arguments(self, body: bytes) -> Response:
         """Read the robots again with arguments of xacro that a page gives."""
-        sent = None
-        with suppress(ValueError, RecursionError):
-            sent = json.loads(body)
+        sent = _sent(body)
         with self._changed:
             before = self.tried
             robots = [*self._files.robots, *self._loaded.values()]
@@ -198,11 +204,31 @@ class RobotPages:
                 ):
                     self.tried = {**self.tried, **values}
                 case _:
-                    why = "this request is not from the page"
-                    return json_response(HTTPStatus.BAD_REQUEST, error=why)
+                    return json_response(HTTPStatus.BAD_REQUEST, error=_NOT_FROM_PAGE)
             if self.tried != before:
                 self._asked.set()
         return json_response()
+
+    def _explain(self, body: bytes) -> Response:
+        """Read the robots again, and explain an output of a terminal that a page gives."""
+        match _sent(body):
+            case {"do": "clear"}:
+                log = None
+            case {"do": "explain", "log": str(text)}:
+                log = text.encode("utf-8", "replace") if text.strip() else None
+            case _:
+                return json_response(HTTPStatus.BAD_REQUEST, error=_NOT_FROM_PAGE)
+        with self._changed:
+            self.log = log
+            self._asked.set()
+        return json_response()
+
+
+def _sent(body: bytes) -> object:
+    """Return what a page sends; None for what is no JSON."""
+    with suppress(ValueError, RecursionError):
+        return json.loads(body)
+    return None
 
 
 def _address(path: str) -> str:
@@ -233,7 +259,7 @@ def follow_files(
             return
         try:
             with limited_time(GRADE_SECONDS if request.rubric else INSPECT_SECONDS):
-                files = read_robots(request, pages.tried)
+                files = read_robots(request, pages.tried, pages.log)
         except GraderError as error:
             if not pages.number:
                 raise
@@ -255,7 +281,7 @@ def view_in_browser(
     """
     gc.enable()  # unlike other commands, this one may run for hours
     pages = RobotPages()
-    with LocalServer(pages, port) as server:
+    with LocalServer(pages, port, MAX_LOG_BODY) as server:
         # Some browsers see the current folder, but no folder for temporary files.
         pages.link = Path(f"open-view-{server.port}.html")
         versions = follow_files(request, pages, {os.path.realpath(pages.link)})

@@ -18,9 +18,15 @@ from grader.base.text import printable_path
 from grader.report.formats import Format, InspectFormat
 from grader.report.inspection import InspectedRobot, Inspection
 from grader.report.pages.graph_page import graph_html
-from grader.report.pages.inspection_page import inspection_html, problem_card
+from grader.report.pages.inspection_page import inspection_html, log_cards, problem_card
 from grader.report.pages.student import render_html
-from grader.report.pages.viewing import ArgumentField, GraphViewing, ProblemCard, Viewing
+from grader.report.pages.viewing import (
+    ArgumentField,
+    GraphViewing,
+    LogCard,
+    ProblemCard,
+    Viewing,
+)
 from grader.report.shown_graph import ShownGraph
 from grader.ros.api import Read, Unreadable
 
@@ -70,10 +76,13 @@ class ViewedFiles(NamedTuple):
     notes: Sequence[str]  # on how it was read
     besides: Sequence[Path]  # the files that were read besides a single one
     graphs: _ViewedGraphs | None = None
+    log: Sequence[LogCard] | None = None  # what is said of a log; None without one
 
 
-def read_robots(request: ViewRequest, tried: Mapping[str, str]) -> ViewedFiles:
-    """Return the robots at a path, with the arguments of xacro that are tried.
+def read_robots(
+    request: ViewRequest, tried: Mapping[str, str], log: bytes | None = None
+) -> ViewedFiles:
+    """Return the robots at a path, with the arguments of xacro that are tried, and of a log.
 
     Raises GraderError, also if there is no robot.
     """
@@ -82,12 +91,14 @@ def read_robots(request: ViewRequest, tried: Mapping[str, str]) -> ViewedFiles:
     notes: dict[str, None] = {}
     arg = [*request.arg, *(f"{name}={value}" for name, value in tried.items())]
     read = _graded if request.rubric else _inspected
-    return read(request, arg, notes)
+    return read(request, arg, log, notes)
 
 
-def _inspected(request: ViewRequest, arg: Sequence[str], notes: dict[str, None]) -> ViewedFiles:
+def _inspected(
+    request: ViewRequest, arg: Sequence[str], log: bytes | None, notes: dict[str, None]
+) -> ViewedFiles:
     """Return the robots that an inspection finds."""
-    inspection, opened = open_and_inspect(_inspection(request, arg), notes.setdefault)
+    inspection, opened = open_and_inspect(_inspection(request, arg, log), notes.setdefault)
     if not inspection.robots:
         raise InputError(next(iter(notes), _no_robot(request.path)))
     robots = [_inspected_robot(robot, inspection) for robot in inspection.robots]
@@ -95,10 +106,16 @@ def _inspected(request: ViewRequest, arg: Sequence[str], notes: dict[str, None])
     if not opened.is_single:
         render = partial(_graph_page, opened, inspection)
         graphs = _ViewedGraphs(opened.launch_files(), render)
-    return ViewedFiles(robots, [*notes], inspection.besides, graphs)
+    return ViewedFiles(robots, [*notes], inspection.besides, graphs, _of_log(inspection))
 
 
-def _inspection(request: ViewRequest, arg: Sequence[str]) -> InspectRequest:
+def _of_log(inspection: Inspection) -> Sequence[LogCard] | None:
+    if inspection.log is None:
+        return None
+    return log_cards(inspection.log, inspection.source)
+
+
+def _inspection(request: ViewRequest, arg: Sequence[str], log: bytes | None) -> InspectRequest:
     return InspectRequest(
         path=request.path,
         robot="",
@@ -112,6 +129,7 @@ def _inspection(request: ViewRequest, arg: Sequence[str]) -> InspectRequest:
         watch=True,
         select=None,
         ignore=None,
+        log=log,
     )
 
 
@@ -136,7 +154,9 @@ def _inspected_robot(robot: InspectedRobot, inspection: Inspection) -> ViewedRob
     )
 
 
-def _graded(request: ViewRequest, arg: Sequence[str], notes: dict[str, None]) -> ViewedFiles:
+def _graded(
+    request: ViewRequest, arg: Sequence[str], log: bytes | None, notes: dict[str, None]
+) -> ViewedFiles:
     """Return the robot that is graded."""
     run = grade_submission(
         GradeRequest(
@@ -158,11 +178,14 @@ def _graded(request: ViewRequest, arg: Sequence[str], notes: dict[str, None]) ->
         notes.setdefault,
     )
     robots = [_graded_robot(run.report, request.path)]
-    graphs = None
-    if any(package.launch_files for package in run.report.submission.packages):
-        inspection, opened = open_and_inspect(_inspection(request, ()), lambda _: None)
-        graphs = _ViewedGraphs(opened.launch_files(), partial(_graph_page, opened, inspection))
-    return ViewedFiles(robots, [*notes], run.besides, graphs)
+    graphs, cards = None, None
+    has_launch = any(package.launch_files for package in run.report.submission.packages)
+    if has_launch or log is not None:
+        inspection, opened = open_and_inspect(_inspection(request, (), log), lambda _: None)
+        cards = _of_log(inspection)
+        if has_launch:
+            graphs = _ViewedGraphs(opened.launch_files(), partial(_graph_page, opened, inspection))
+    return ViewedFiles(robots, [*notes], run.besides, graphs, cards)
 
 
 def _graded_robot(report: "Report", path: str) -> ViewedRobot:

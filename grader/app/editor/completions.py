@@ -2,21 +2,16 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from typing import NamedTuple
 
 from lsprotocol import types as lsp
 
 from grader.app.editor.look import Look
 from grader.app.editor.parameter_keys import parameter_key
-from grader.app.editor.places import TextPlace, without_lines
-from grader.base.errors import InputError
-from grader.files.reading import read_capped
-from grader.files.tree import overlaid
+from grader.app.editor.places import TextPlace, readings
 
 _MAX_BEFORE = 2_000  # characters, in which it is searched what is asked for
 _MAX_OFFERED = 500
-_MAX_SAVED = 1024 * 1024  # bytes of a file
 _PACKAGE = r"(?P<owner>[\w.-]+)"
 _QUOTE = "[\"']"
 
@@ -132,8 +127,10 @@ def completions(look: Look, place: TextPlace) -> list[lsp.CompletionItem]:
         *above, line = before.split("\n")
         key = parameter_key(above, line)
         if key is not None and re.fullmatch(r" *[\w.]*", line):
-            readable = without_lines(look, place, [place.line])
-            return _items(readable.names.parameters_below(key.node, key.prefix), "parameter")
+            keys: list[str] = []
+            for one in readings(look, place, keeps_line=False):
+                keys = max(keys, one.names.parameters_below(key.node, key.prefix), key=len)
+            return _items(keys, "parameter")
     return []
 
 
@@ -148,29 +145,13 @@ def _offered(
         if not owner:
             return []
     names: list[str] = []
-    for one in _looks(look, place):
+    for one in readings(look, place, keeps_line=False):
         some = [name for kind in context.kinds for name in one.names.offered(kind, owner)]
         names = max(names, some, key=len)
     folders = re.findall(rf"{_QUOTE}([^\"']*){_QUOTE}", given.get("folders") or "")
     below = "".join(f"{folder.strip('/')}/" for folder in folders)
     names = [name.removeprefix(below) for name in names if name.startswith(below)]
     return _items(names, context.kinds[0])
-
-
-def _looks(look: Look, place: TextPlace) -> list[Look]:
-    """Return looks at the files that may read the file that is typed.
-
-    They are the files as they are; where this one has an error, also without the line that is
-    typed, and as it is saved.
-    """
-    wrong = {each.location.path for each in look.findings if each.severity == "error"}
-    if place.path not in wrong:
-        return [look]
-    looks = [look, without_lines(look, place, [place.line])]
-    with suppress(InputError):
-        saved = read_capped(place.root / place.path, _MAX_SAVED)
-        looks.append(look.again(overlaid(look.tree, {place.path: saved})))
-    return looks
 
 
 def _items_with_details(

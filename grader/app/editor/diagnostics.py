@@ -22,6 +22,16 @@ _SEVERITIES = {
     "note": lsp.DiagnosticSeverity.Information,
 }
 _MAX_SHOWN = 300  # in one file
+# Codes of problems that one mistake makes where their words overlap: the first one is shown, and
+# the other is said with it. An empty code stands for any.
+_ONE_MISTAKE = (
+    ("URDF041", "URDF091"),  # a shape without a size, and the word that is there instead
+    ("URDF090", "URDF091"),  # what does not belong into a geometry
+    ("REF002", "URDF096"),  # a joint that is missing, by two names of one comparison
+    ("XACRO006", "REF032"),  # a package that is missing
+    ("RVZ004", "REF022"),  # a path that only one machine has
+    ("", "URDF095"),  # what Python's XML parser refuses, which ROS 2 accepts
+)
 
 
 @dataclass
@@ -31,11 +41,12 @@ class _Shown:
     finding: Finding
     notes: list[tuple[Location, str]] = field(default_factory=list)
     costs: list[str] = field(default_factory=list)
+    joined: list[Finding] = field(default_factory=list)  # others that the same mistake makes
 
-    @property
-    def key(self) -> tuple[str, Location]:
-        """The message and the place of what is wrong."""
-        return self.finding.message, self.finding.location
+    def is_reported_by(self, mistake: Mistake) -> bool:
+        """Return whether a mistake of a rubric reports it, or what is joined to it."""
+        every = (self.finding, *self.joined)
+        return any((one.message, one.location) in mistake.reported for one in every)
 
     @property
     def message(self) -> str:
@@ -55,7 +66,7 @@ def diagnostics_of(
     """
     ranges = TextRanges(look, root)
     shown: dict[str, list[lsp.Diagnostic]] = {}
-    problems = _join_assumptions(look.findings)
+    problems = _join_same(_join_assumptions(look.findings), ranges)
     for one in _join_mistakes(problems, graded, look.opened.source):
         path, at = place_in_repository(one.finding, Base())
         if path not in look.tree.files:
@@ -87,6 +98,65 @@ def _join_assumptions(findings: Iterable[Finding]) -> list[_Shown]:
     return [*shown, *alone]
 
 
+def _join_same(shown: Iterable[_Shown], ranges: TextRanges) -> list[_Shown]:
+    """Return problems, each with the others that the same mistake makes."""
+    kept: list[_Shown] = []
+    by_cause: dict[tuple[str, str, str], _Shown] = {}
+    by_line: dict[tuple[str, int], list[_Shown]] = {}
+    for one in shown:
+        rule, cause = one.finding.rule, one.finding.cause
+        host = by_cause.setdefault((rule.id, rule.name, cause), one) if cause else one
+        of_line = by_line.setdefault(one.finding.location[:2], [])
+        if host is one:
+            hosts = (other for other in of_line if _is_one_mistake(other, one, ranges))
+            host = next(hosts, one)
+        if host is one:
+            kept.append(one)
+            of_line.append(one)
+        else:
+            _join(host, one, ranges)
+    return kept
+
+
+def _join(host: _Shown, other: _Shown, ranges: TextRanges) -> None:
+    """Add a problem to one that the same mistake makes; the word is the shorter one of both."""
+    host.joined.append(host.finding)
+    host.joined.append(other.finding)
+    first, second = host.finding, other.finding
+    codes = (second.rule.id, first.rule.id)
+    if codes in _ONE_MISTAKE or ("", first.rule.id) in _ONE_MISTAKE:
+        first, second = second, first
+    text = second.message
+    if first.rule != second.rule:
+        text = f"{second.rule.id}: {text}"
+    host.notes.append((second.location, text))
+    host.notes += other.notes
+    word = first.location
+    if word[:2] == second.location[:2]:
+        width = _width(ranges.range(word))
+        if _width(ranges.range(second.location)) < width:
+            word = second.location._replace(calls=word.calls)
+    host.finding = first._replace(location=word)
+
+
+def _is_one_mistake(one: _Shown, other: _Shown, ranges: TextRanges) -> bool:
+    """Return whether two problems of a line are at one word, and one mistake makes both."""
+    first, second = one.finding, other.finding
+    codes = {first.rule.id, second.rule.id}
+    if len(codes) == 1:
+        calls = first.location.calls, second.location.calls
+        return first.location[:3] == second.location[:3] and calls[0] != calls[1]
+    is_known = any(codes == {*pair} or (not pair[0] and pair[1] in codes) for pair in _ONE_MISTAKE)
+    if not is_known:
+        return False
+    at, beside = ranges.range(first.location), ranges.range(second.location)
+    return at.start <= beside.end and beside.start <= at.end
+
+
+def _width(at: lsp.Range) -> tuple[int, int]:
+    return at.end.line - at.start.line, at.end.character - at.start.character
+
+
 def _may_be_cause(finding: Finding, at: Location) -> bool:
     """Return whether a problem may be why something is assumed at a place."""
     is_near = finding.severity == "error" or finding.location.line == at.line
@@ -108,7 +178,7 @@ def _join_mistakes(
     left, others = [*shown], []
     for mistake in graded:
         finding = mistake.finding
-        one = next((reported for reported in left if reported.key in mistake.reported), None)
+        one = next((reported for reported in left if reported.is_reported_by(mistake)), None)
         if one is None:
             one = _Shown(finding)
             others.append(one)

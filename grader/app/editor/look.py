@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from grader.app.ignoring import Selection, without_ignored
 from grader.app.settings import Settings
+from grader.base.problems import Problem
 from grader.base.reuse import Memory
 from grader.base.source import Edits, Location
 from grader.files.reading import URDF_LIMIT
@@ -46,6 +47,7 @@ class Look:
     tree: Tree
     opened: OpenedWorkspace
     findings: Sequence[Finding]
+    problems: Sequence[Problem]  # what is wrong, also what is ignored
     grade: Callable[[Tree], Graded]
     again: "Callable[[Tree], Look]"  # looks at other files instead
 
@@ -104,4 +106,5 @@ def look_at(
     selection = Selection(settings=settings, folder=root)
     shown = without_ignored(inspection, opened.whole_tree, [*tree.files], selection)
     memory.forget_unused()
-    return Look(tree, opened, findings_in_inspection(shown), grade, again)
+    findings = findings_in_inspection(shown)
+    return Look(tree, opened, findings, tuple(inspection.problems), grade, again)

@@ -22,6 +22,8 @@ from grader.app.editor import (
     completions,
     describing,
     fixes,
+    folding,
+    logs,
     places,
     renaming,
     signatures,
@@ -335,12 +337,28 @@ def _answer_about_places(server: _GraderServer) -> None:
 
 
 def _offer_changes(server: _GraderServer) -> None:
-    """Let a server list the names of a file and of all, correct problems, and rename."""
+    """Let a server list names, links and what can be folded, correct problems, and rename."""
 
     @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     async def symbols_of(ls: _GraderServer, params: lsp.DocumentSymbolParams) -> Any:
         start = lsp.Position(0, 0)
         return await ls.answer(params.text_document.uri, start, symbols.in_document)
+
+    @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_LINK)
+    async def links_of(ls: _GraderServer, params: lsp.DocumentLinkParams) -> Any:
+        start = lsp.Position(0, 0)
+        return await ls.answer(params.text_document.uri, start, places.links)
+
+    @server.feature(lsp.TEXT_DOCUMENT_FOLDING_RANGE)
+    async def folding_of(ls: _GraderServer, params: lsp.FoldingRangeParams) -> Any:
+        document = ls.workspace.get_text_document(params.text_document.uri)
+        ranges = partial(folding.folding_ranges, document.path, document.source)
+        return await ls.in_thread(ranges)
+
+    @server.command(logs.EXPLAIN)
+    async def explain(ls: _GraderServer, log: str) -> list[str]:
+        sessions = [*ls.sessions.values()]
+        return await ls.in_thread(partial(logs.explain, sessions, log))
 
     @server.feature(lsp.WORKSPACE_SYMBOL)
     async def all_symbols(ls: _GraderServer, params: lsp.WorkspaceSymbolParams) -> Any:

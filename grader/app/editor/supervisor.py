@@ -33,6 +33,8 @@ _NOTHING_YET: Mapping[str, object] = {
     lsp.TEXT_DOCUMENT_DEFINITION: None,
     lsp.TEXT_DOCUMENT_REFERENCES: None,
     lsp.TEXT_DOCUMENT_PREPARE_RENAME: None,
+    lsp.TEXT_DOCUMENT_DOCUMENT_LINK: None,
+    lsp.TEXT_DOCUMENT_FOLDING_RANGE: None,
     lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL: None,
     lsp.TEXT_DOCUMENT_COMPLETION: {"isIncomplete": True, "items": []},
 }

@@ -29,11 +29,18 @@ def in_document(look: Look, place: TextPlace) -> list[lsp.DocumentSymbol]:
     """Return the names that a file defines, in the order of the file.
 
     Those of a robot are a tree: below a link the joints that it is the parent of, below a joint its
-    child.
+    child. In a launch file, they are the nodes that it starts and its arguments.
     """
     ranges = place.ranges(look)
     symbols = []
+    started = look.names.started_in(place.path)
+    for one in started:
+        at = ranges.range(one.location)
+        word = lsp.Range(at.start, at.start)
+        symbols.append(lsp.DocumentSymbol(one.name, lsp.SymbolKind.Class, at, word, one.detail))
     for each in look.names.defined_in(place.path):
+        if started and each.kind != "launch argument":
+            continue
         at = ranges.range(each.location)
         kind = _KINDS.get(each.kind, lsp.SymbolKind.Constant)
         symbols.append(lsp.DocumentSymbol(each.name, kind, at, at, detail=each.kind))

@@ -1,6 +1,7 @@
 """The page of an inspection."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
 from grader import __version__
 from grader.base.problems import Problem
@@ -9,17 +10,22 @@ from grader.base.text import printable
 from grader.report.drawing.picture import plain_picture
 from grader.report.inspection import (
     MAX_LISTED,
+    NO_FAILURE,
     Inspection,
     effect,
     lists,
+    log_line,
     look_of,
     robot_line,
 )
 from grader.report.locations import source_lines
 from grader.report.pages.robot_page import render_robot_page
 from grader.report.pages.shell import Assets
-from grader.report.pages.viewing import ProblemCard, Viewing
+from grader.report.pages.viewing import LogCard, ProblemCard, Viewing
 from grader.report.readings import problem_line
+
+if TYPE_CHECKING:
+    from grader.ros.api import LogAnswer
 
 _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 
@@ -50,6 +56,18 @@ def inspection_html(inspection: Inspection, viewing: Viewing | None = None) -> s
     else:
         picture = plain_picture(configuration, None, None, ())
     return render_robot_page("inspection.html", values, picture, Assets(), {}, viewing)
+
+
+def log_cards(
+    answers: "Iterable[LogAnswer]", source_of: Callable[[str], Source | None]
+) -> list[LogCard]:
+    """Return what is said of the messages of a log, what the files explain first."""
+    cards = []
+    for answer in answers:
+        at = answer.location
+        lines = source_lines(at, source_of) if at is not None else ()
+        cards.append(LogCard(log_line(answer), at is not None, lines))
+    return cards or [LogCard(NO_FAILURE, is_explained=False)]
 
 
 def problem_card(problem: Problem, source_of: Callable[[str], Source | None]) -> ProblemCard:

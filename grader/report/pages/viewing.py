@@ -45,6 +45,14 @@ class ArgumentField(NamedTuple):
     value: str | None  # None if it is known only at run time
 
 
+class LogCard(NamedTuple):
+    """What is said of a message of a log on a page; `is_explained` if the files explain it."""
+
+    text: str
+    is_explained: bool
+    source: Sequence[SourceLine] = ()
+
+
 class ProblemCard(NamedTuple):
     """A problem on a page."""
 
@@ -67,6 +75,7 @@ class Viewing:
     broken: Sequence[ProblemCard]
     store: MeshStore
     meshes: "MeshLoader | None"  # of the robot
+    log: Sequence[LogCard] | None = None  # what is said of a log; None without one
     graph: str = ""  # the address of the page of the graph; empty without launch files
 
     @property

@@ -13,9 +13,11 @@ from grader.base.text import counted, printable
 from grader.report.causes import Cause, CauseKind, causes_of, kinds_of, places_text
 from grader.report.inspection import (
     EFFECTS,
+    NO_FAILURE,
     Inspection,
     effect,
     lists,
+    log_line,
     look_of,
     problem_counts,
     robot_line,
@@ -85,14 +87,8 @@ def _log_lines(inspection: Inspection) -> Iterator[str]:
     if inspection.log is None:
         return
     if not inspection.log:
-        yield "no line of the log says that something fails"
-    for answer in inspection.log:
-        place = f"line {answer.line} of the log"
-        if answer.location is not None:
-            where = printable(answer.location.file_and_line)
-            yield f"{where} explains {place}: {printable(answer.message)}"
-        else:
-            yield f"{place}: {printable(answer.message)}"
+        yield NO_FAILURE
+    yield from map(log_line, inspection.log)
 
 
 def _remarks_on(inspection: Inspection) -> Iterator[str]:

@@ -1,15 +1,55 @@
 """What an editor asks of the names of a workspace."""
 
+from collections import Counter
 from collections.abc import Collection
 from functools import cached_property
 
+from grader.base.source import Location
 from grader.ros.workspace.index.all_names import WorkspaceNames
+from grader.ros.workspace.index.name_texts import texts_of
+from grader.ros.workspace.index.names_in_graph import ComputedName
 from grader.ros.workspace.index.offered_elements import offered_elements
 from grader.ros.workspace.index.offered_names import offered_names
 from grader.ros.workspace.index.offered_parameters import parameter_text, parameters_below
+from grader.ros.workspace.index.renamed_graph import (
+    PARAMETER,
+    computed_like,
+    graph_under,
+    open_ends,
+    renamed_owner,
+)
+from grader.ros.workspace.index.started_names import StartedName, started_in
+from grader.ros.workspace.index.words_left import files_for_parameters, words_left
 from grader.ros.workspace.index.written_names import WrittenName
 from grader.ros.workspace.offered_macros import parameters_of_macro
 from grader.ros.workspace.opened import OpenedWorkspace
+
+# The kinds of names for which files are searched whose words no reader knows.
+_GIVEN = ("parameter", "controller", "plugin section")  # kinds that name parameters
+_IN_FILES = "plugin section"  # names that mean nothing in other files
+_SEARCHED = (
+    "parameter",
+    "link",
+    "frame",
+    "joint",
+    "controller",
+    "node",
+    "topic",
+    "service",
+    "action",
+    _IN_FILES,
+)
+
+# Kinds that are listed where they are written, and not where a word for them is.
+_WRITTEN = ("function", "program", "plugin", "file")
+
+
+def _is_listed(name: WrittenName) -> bool:
+    """Return whether a name is one that its file has for others."""
+    if name.role != "definition" or (name.is_made and name.kind in _WRITTEN):
+        return False
+    at = name.location
+    return (at.line, at.column) != (at.end_line, at.end_column)
 
 
 class NamePlaces:
@@ -34,19 +74,75 @@ class NamePlaces:
         return sorted(self._names.same_as(name), key=lambda place: place.role)
 
     def named_like(self, places: Collection[WrittenName], new: str) -> list[WrittenName]:
-        """Return the places of another name of the kinds and owners that some places have."""
-        meant = {(place.kind, place.owner) for place in places}
+        """Return the places of another name of the kinds and owners that some places have.
+
+        What owns a topic is its full name, which changes with it.
+        """
+        meant = {(place.kind, renamed_owner(place, new)) for place in places}
         return [
             place
             for place in self._names.names
             if place.name == new and (place.kind, place.owner) in meant
         ]
 
+    def computed_like(self, places: Collection[WrittenName]) -> list[ComputedName]:
+        """Return the names that no file writes and that may be the one of some places."""
+        computed = [*computed_like(self._names.computed, places)]
+        return computed or [*open_ends(self._opened.workspace, places)]
+
+    def graph_under(
+        self, kind: str, places: Collection[WrittenName], new: str
+    ) -> Counter[tuple[str, ...]]:
+        """Return what runs after each launch, with another name in place of that of some places."""
+        paths = {place.location.path for place in places}
+        names = {place.name for place in places}
+        named = {each.location.path for each in self._names.names if each.name in names}
+        rows = graph_under(self._opened.workspace, places, new, named - paths)
+        if kind not in _GIVEN:  # only parameters that differ from their defaults are rows
+            for row in [row for row in rows if PARAMETER in row]:
+                del rows[row]
+        return rows
+
+    def words_left(self, places: Collection[WrittenName]) -> list[Location]:
+        """Return where files have the name of some places, and no reader says what it is there."""
+        name = next(iter(places))
+        if name.kind not in _SEARCHED:
+            return []
+        named = [written for written in self._names.names if written.name == name.name]
+        paths: Collection[str] = self._opened.whole_tree.files
+        if name.kind == _IN_FILES:
+            paths = {place.location.path for place in places}
+        elif name.kind == "parameter":
+            owners = {place.owner.partition("/")[0] for place in places}
+            paths = [*files_for_parameters(self._opened.workspace, owners)]
+        left = []
+        for at in words_left(paths, self._opened.source, name):
+            if not any(written.covers(*at[:3]) for written in named):
+                left.append(at)
+        return left
+
+    def files_named_in(self, path: str) -> list[WrittenName]:
+        """Return where a file names files of packages, each place once; their names are paths."""
+        by_place = {
+            written.location: written
+            for written in self._names.names
+            if written.location.path == path and written.kind == "file" and written.role == "use"
+        }
+        return [*by_place.values()]
+
+    def started_in(self, path: str) -> list[StartedName]:
+        """Return the nodes and components that a launch file itself starts."""
+        return [*started_in(self._opened.workspace, path)]
+
+    def texts_of(self, name: WrittenName) -> list[str]:
+        """Return what else is known of a name, a fact each."""
+        return [*texts_of(self._opened.workspace, name)]
+
     def defined_in(self, path: str) -> list[WrittenName]:
         """Return the names that a file defines, each place once, in its order."""
         by_place: dict[object, WrittenName] = {}
         for definition in self._names.names:
-            if definition.location.path == path and definition.role == "definition":
+            if definition.location.path == path and _is_listed(definition):
                 by_place.setdefault(
                     (definition.location, definition.kind, definition.name), definition
                 )
@@ -56,7 +152,7 @@ class NamePlaces:
         """Return the first definitions whose names hold a text, in whatever case."""
         by_place: dict[object, WrittenName] = {}
         for definition in self._names.names:
-            if definition.role == "definition" and text.lower() in definition.name.lower():
+            if _is_listed(definition) and text.lower() in definition.name.lower():
                 by_place.setdefault(
                     (definition.location, definition.kind, definition.name), definition
                 )

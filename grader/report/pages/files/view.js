@@ -9,7 +9,8 @@
   const find = (/** @type {string} */ id) =>
     /** @type {HTMLElement} */ (document.getElementById(id));
   const read = () => JSON.parse(find("data").textContent || "{}");
-  const PARTS = ["view-robots", "view-arguments", "view-notes", "view-broken"];
+  const PARTS = ["view-robots", "view-arguments", "view-answers", "view-notes", "view-broken"];
+  const MAX_LOG = 300_000; // characters, of which the last ones are read
   const STEPS = 65535; // of a coordinate of a mesh
 
   // --- Meshes ---
@@ -192,10 +193,10 @@
 
   // --- Arguments of xacro ---
   const form = /** @type {HTMLFormElement} */ (find("view-arguments"));
-  const send = async (/** @type {object} */ action) => {
+  const send = async (/** @type {object} */ action, /** @type {string} */ to = "arguments") => {
     const headers = { "Content-Type": "application/json" };
     const request = { method: "POST", headers, body: JSON.stringify(action) };
-    await fetch("arguments", request).catch(() => {}); // the page says that there is no connection
+    await fetch(to, request).catch(() => {}); // the page says that there is no connection
   };
   form.addEventListener("submit", (event) => {
     event.preventDefault();
@@ -212,6 +213,17 @@
     send({ do: "reset" });
   });
   form.addEventListener("change", () => form.requestSubmit());
+
+  // --- An output of the terminal ---
+  const log = /** @type {HTMLFormElement} */ (find("view-log-form"));
+  const text = /** @type {HTMLTextAreaElement} */ (find("view-log-text"));
+  log.addEventListener("submit", (event) => {
+    event.preventDefault();
+    send({ do: "explain", log: text.value.slice(-MAX_LOG) }, "log");
+  });
+  log.addEventListener("reset", () => {
+    send({ do: "clear" }, "log");
+  });
 
   mark();
   showMeshes();

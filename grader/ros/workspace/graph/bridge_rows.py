@@ -29,6 +29,7 @@ class BridgeRow(NamedTuple):
     gz_type: str  # in its newer form: gz.msgs.Image
     direction: str
     location: Location
+    ros_location: Location
     ros_type_location: Location
     gz_type_location: Location
     direction_location: Location
@@ -106,6 +107,7 @@ def _rows_in_arguments(node: StartedNode) -> Iterator[BridgeRow]:
                 gz_type=_newer_gz_type(match["gz"]),
                 direction=_DIRECTIONS[match["direction"]],
                 location=at,
+                ros_location=at,
                 ros_type_location=at,
                 gz_type_location=at,
                 direction_location=at,
@@ -144,6 +146,7 @@ def _row_in_yaml(row: YamlNode, *, is_used: bool) -> BridgeRow | None:
         gz_type=_newer_gz_type(gz.type),
         direction=written or _BOTH,
         location=gz.location,
+        ros_location=ros.location,
         ros_type_location=ros.type_location,
         gz_type_location=gz.type_location,
         direction_location=direction.location if direction is not None else gz.location,

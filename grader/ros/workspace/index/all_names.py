@@ -8,10 +8,15 @@ computed unless it is asked for.
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 
+from grader.base.errors import NotDecided
+from grader.base.source import Source
 from grader.ros.known.shared_names import shared_names
 from grader.ros.workspace.index.names_in_files import names_in_launch_files, names_in_yaml
+from grader.ros.workspace.index.names_in_graph import ComputedName, GraphNames
+from grader.ros.workspace.index.names_in_packages import PackageNames
 from grader.ros.workspace.index.names_in_robots import names_in_robots
 from grader.ros.workspace.index.names_in_xacro import names_in_xacro
 from grader.ros.workspace.index.written_names import (
@@ -24,6 +29,7 @@ from grader.ros.workspace.index.written_names import (
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Definition, Fact, Use
 
+_SourceOf = Callable[[str], Source | None]
 _MAX_TEXT = 4 * 1024 * 1024  # bytes of a file
 # Kinds that mean the same things: each link is a frame.
 _ALIKE = {"frame": "link"}
@@ -37,7 +43,8 @@ class WorkspaceNames:
     `opened.names()` gives it; editors ask it what is at a place, and where else that name is.
     """
 
-    def __init__(self, names: Iterable[WrittenName]) -> None:
+    def __init__(self, names: Iterable[WrittenName], computed: Iterable[ComputedName] = ()) -> None:
+        self.computed = tuple(dict.fromkeys(computed))
         self.names = tuple(sorted(dict.fromkeys(names), key=_order))
         self._by_path: dict[str, list[WrittenName]] = {}
         self._alike: dict[tuple[str, str], list[WrittenName]] = {}
@@ -77,15 +84,29 @@ def read_names(workspace: Workspace, facts: Iterable[Fact]) -> WorkspaceNames:
         workspace: The packages and the robots.
         facts: What `read_facts` yields of the workspace, as far as it is known.
     """
+    source_of = reader_of(lambda path: workspace.tree.read(path, _MAX_TEXT))
     names = [*names_in_robots(workspace.urdfs)]
     names += names_in_xacro(workspace.urdfs, workspace.robots.xacro_sources)
     names += names_in_launch_files(workspace)
-    names += names_in_yaml(workspace)
+    ends = GraphNames(workspace, source_of)
+    computed: list[ComputedName] = []
+    with suppress(NotDecided):
+        names += PackageNames(workspace, source_of).names()
+    with suppress(NotDecided):
+        names += ends.nodes()
+        names += ends.parameters()
+        for end in (*ends.frames(), *ends.names()):
+            if isinstance(end, ComputedName):
+                computed.append(end)
+            else:
+                names.append(end)
+    nodes = {name.name for name in names if name.kind == "node"}
+    names += names_in_yaml(workspace, nodes)
     written = {(_key(known_name), known_name.role, known_name.location) for known_name in names}
-    for addition in _names_of_facts(workspace, facts):
+    for addition in _names_of_facts(source_of, facts):
         if (_key(addition), addition.role, addition.location) not in written:
             names.append(addition)
-    return WorkspaceNames(_owned(workspace, names))
+    return WorkspaceNames(_owned(workspace, names), computed)
 
 
 def _key(name: WrittenName) -> tuple[str, str]:
@@ -103,32 +124,40 @@ def _order(name: WrittenName) -> tuple[str, int, int, str, str, str]:
     return at.path, at.line, at.column, name.kind, name.name, name.owner
 
 
-def _names_of_facts(workspace: Workspace, facts: Iterable[Fact]) -> Iterator[WrittenName]:
+def _names_of_facts(source_of: _SourceOf, facts: Iterable[Fact]) -> Iterator[WrittenName]:
     """Yield the names of facts at what is written of them.
 
     There are none for what no file of the workspace has.
     """
-    source_of = reader_of(lambda path: workspace.tree.read(path, _MAX_TEXT))
     for fact in facts:
         if not isinstance(fact, Definition | Use) or _is_of_no_place(fact):
             continue
         source = source_of(fact.location.path)
         span = None
         role: Role = "definition" if isinstance(fact, Definition) else "use"
-        if source is not None:
+        if source is not None and not _is_of_every_robot(fact, source):
             span = span_of_name(source, fact.location, fact.kind, fact.name, role)
         if source is not None and span is not None:
             yield written_name(source, span, fact.kind, fact.name, role, fact.owner)
 
 
 def _is_of_no_place(fact: Definition | Use) -> bool:
-    """Return whether a fact is a definition that no place has, or that is a use where it stands.
+    """Return whether a fact is a definition that no place has, or that is read otherwise.
 
-    Such a use is an argument that is passed, which is declared to the comparison of names.
+    An argument that is passed is declared to the comparison of names; topics are in the graph.
     """
-    is_known_frame = fact.kind == "frame" and fact.name in shared_names().frames
+    if fact.kind == "topic":
+        return True
     is_argument = fact.kind in ("launch argument", "xacro argument")
-    return isinstance(fact, Definition) and (is_known_frame or is_argument)
+    return isinstance(fact, Definition) and is_argument
+
+
+def _is_of_every_robot(fact: Definition | Use, source: Source) -> bool:
+    """Return whether a fact is a frame that every robot may have, said of its first link."""
+    if fact.kind != "frame" or fact.name not in shared_names().frames:
+        return False
+    start = source.offset(fact.location.line, fact.location.column)
+    return source.text.startswith("<link", start)
 
 
 def _owned(workspace: Workspace, names: Sequence[WrittenName]) -> Iterator[WrittenName]:

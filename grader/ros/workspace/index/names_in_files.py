@@ -1,6 +1,6 @@
 """Names in launch files and YAML: arguments, sections of controllers, frames of RViz."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import suppress
 
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml
@@ -30,12 +30,18 @@ def names_in_launch_files(workspace: Workspace) -> Iterator[WrittenName]:
                 yield written_name(source, span, "launch argument", argument.name, role, owner)
 
 
-def names_in_yaml(workspace: Workspace) -> Iterator[WrittenName]:
-    """Yield the controllers that sections of parameters are for, and the frames of RViz files."""
+def names_in_yaml(workspace: Workspace, nodes: Collection[str]) -> Iterator[WrittenName]:
+    """Yield what sections of parameters are for, and the frames of RViz files.
+
+    The sections are those of controllers and of these nodes.
+    """
     for _, tree in workspace.installed.trees:
         for key, mapping in _keys_with_parameters(tree):
+            name = key.rpartition("/")[2]
             if key in workspace.installed.typed_sections:
-                yield _name_of_key(mapping, key)
+                yield _name_of_key(mapping, key, "controller", name)
+            elif name in nodes:
+                yield _name_of_key(mapping, key, "node", name)
     for package in workspace.packages:
         for path in [file for file in package.tree.files if file.endswith(".rviz")]:
             data = package.tree.read(path, _MAX_TEXT)
@@ -56,11 +62,12 @@ def _keys_with_parameters(tree: YamlNode) -> Iterator[tuple[str, YamlNode]]:
             waiting.append(inner)
 
 
-def _name_of_key(mapping: YamlNode, key: str) -> WrittenName:
+def _name_of_key(mapping: YamlNode, key: str, kind: str, name: str) -> WrittenName:
     source, at = mapping.source, mapping.key_location(key)
     start = source.offset(at.line, at.column)
     start += int(source.text[start : start + 1] in ("'", '"'))
-    return written_name(source, (start, start + len(key)), "controller", key, "use")
+    end = start + len(key)
+    return written_name(source, (end - len(name), end), kind, name, "use")
 
 
 def _frames_of_rviz(tree: YamlNode) -> Iterator[WrittenName]:

@@ -37,6 +37,8 @@ class WrittenName(NamedTuple):
     def covers(self, path: str, line: int, column: int) -> bool:
         """Return whether a place of a file is in the name, or just after it."""
         at = self.location
+        if (at.line, at.column) == (at.end_line, at.end_column):
+            return False  # a whole file
         start, end = (at.line, at.column), (at.end_line, at.end_column)
         return at.path == path and start <= (line, column) <= end
 
@@ -62,6 +64,9 @@ _USUAL = {
     "controller": ("arguments", "args"),
     "frame": ("arguments", "args"),
     "launch argument": ("launch_arguments",),
+    "package": ("package", "pkg"),
+    "program": ("executable", "exec"),
+    "plugin": ("plugin",),
 }
 _IN_XML = ("name", "reference", "link", "joint", "link1", "link2", "value")
 _ATTRIBUTE_START = re.compile(r"""[^\s=<>"'/]++\s*+=\s*+(["'])""")
@@ -69,6 +74,7 @@ _TOKEN_OF_CALL = re.compile(
     r'''(?P<text>(?i:[rbuf]{0,2})(?:"""(?s:(?:[^\\]|\\.)*?)"""|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'))'''
     r"|(?P<open>[\[({])|(?P<close>[\])}])|(?P<keyword>(?<!\w)\w++)\s*+=(?!=)|(?P<comment>#[^\n]*|//[^\n]*)|;"
 )
+_WORD = re.compile(r"\b[A-Za-z_]\w*+")
 _LINE = re.compile(r"(?P<indent> *)(?P<dash>- )?[^\s#]")  # of YAML, that is no comment
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)|\{[^{}]*\}")
 _QUOTES = re.compile(r'''(?i:[rbuf]{0,2}|u8)("""|\'\'\'|"|')''')
@@ -226,7 +232,23 @@ def _in_code(source: Source, start: int, kind: str, name: str) -> Span | None:
     before = key.search(text[at:start])
     if before is not None:
         return at + before.start(1), at + before.end(1)
-    return _in_call(text, start, kind, name) or (start, end)
+    in_call = _in_call(text, start, kind, name)
+    return in_call or _constant(source, start, name) or (start, end)
+
+
+def _constant(source: Source, start: int, name: str) -> Span | None:
+    """Return the text of the only constant of a file that is a name and that a call names."""
+    used = {*_WORD.findall(source.text, start, max(call_end(source, start), start))}
+    defined = re.compile(
+        rf"(?m)^[^\n\"'(),#]*?(?:\#define[ ]++)?\b(?P<word>\w++)(?:\[\])?\s*+[={{]?\s*+"
+        rf"(?P<text>\"{re.escape(name)}\"|'{re.escape(name)}')"
+    )
+    spans = [
+        (match.start("text") + 1, match.end("text") - 1)
+        for match in defined.finditer(source.text)
+        if match["word"] in used
+    ]
+    return spans[0] if len(spans) == 1 else None
 
 
 def _in_call(text: str, start: int, kind: str, name: str) -> Span | None:
@@ -280,6 +302,21 @@ def _texts_in_call(text: str, start: int) -> Iterator[tuple[str, Span]]:
             keyword = token["keyword"]
         if token[0] == ";" or depth < 0 or (has_opened and depth == 0):
             return
+
+
+def call_end(source: Source, start: int) -> int:
+    """Return the offset after the call of Python or the element of XML that begins at an offset.
+
+    Without one it is the end of the text.
+    """
+    text, depth = source.text, 0
+    if text[start : start + 1] == "<":
+        return markup.element_end(text, start)
+    for token in _TOKEN_OF_CALL.finditer(text, start):
+        depth += int(bool(token["open"])) - int(bool(token["close"]))
+        if token["close"] and depth <= 0:
+            return token.end()
+    return len(text)
 
 
 def reader_of(read: Callable[[str], bytes | None]) -> Callable[[str], Source | None]:

@@ -54,7 +54,7 @@ _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 def file_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the paths at which a build of the workspace installs no file."""
-    yield from _faults_of(workspace, _named_paths(workspace))
+    yield from _faults_of(workspace, named_paths(workspace))
     yield from _map_images(workspace)
     yield from _models(workspace)
     # Last: reading C++ takes work that the others need where little is left.
@@ -62,9 +62,9 @@ def file_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _faults_of(workspace, _paths_in_cpp(workspace, package))
 
 
-def _faults_of(workspace: Workspace, every: Iterable["_NamedPath"]) -> Iterator[Fact]:
+def _faults_of(workspace: Workspace, every: Iterable["PathInFile"]) -> Iterator[Fact]:
     """Yield the paths that are compared, and then what is wrong with them."""
-    first_named: dict[tuple[str, Location], _NamedPath] = {}
+    first_named: dict[tuple[str, Location], PathInFile] = {}
     for named in every:
         yield Compared("files", posixpath.normpath(named.path).removeprefix(f"{PREFIX}/"))
         first = first_named.setdefault((named.path, named.location), named)
@@ -78,7 +78,7 @@ def _faults_of(workspace: Workspace, every: Iterable["_NamedPath"]) -> Iterator[
                 yield fact
 
 
-class _NamedPath(NamedTuple):
+class PathInFile(NamedTuple):
     """A path below the prefix, with the package whose file names it.
 
     It says whether the path is certainly looked for.
@@ -95,7 +95,7 @@ class _NamedPath(NamedTuple):
     is_needed: bool = False
 
 
-def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
+def named_paths(workspace: Workspace) -> Iterator[PathInFile]:
     """Yield the paths that are named."""
     for package, own_path, launch in workspace.launches.files:
         yield from _paths_in_launch_file(workspace, package, own_path, launch)
@@ -112,12 +112,12 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
 
 def _paths_in_source(
     workspace: Workspace, package: Package, source: Source, *, is_read: bool
-) -> Iterator[_NamedPath]:
+) -> Iterator[PathInFile]:
     """Yield the paths that a file of a robot or of parameters names."""
     for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
         start = match.start()
         is_used = is_read and not _is_unused_property(workspace, source, start)
-        yield _NamedPath(
+        yield PathInFile(
             package=package,
             path=f"{SHARE}/{match[1]}/{match[2]}",
             location=source.at(start),
@@ -157,7 +157,7 @@ def _robots_left_out(workspace: Workspace, package: Package) -> frozenset[str]:
 
 def _paths_in_launch_file(
     workspace: Workspace, package: Package, own_path: str, launch: Launch
-) -> Iterator[_NamedPath]:
+) -> Iterator[PathInFile]:
     """Yield the paths that a launch file of a package names."""
     beside = None
     # From the folder of the sources, a launch file finds what is beside it.
@@ -171,13 +171,13 @@ def _paths_in_launch_file(
         for path in paths:
             is_beside = beside is not None and path.startswith(beside)
             is_read = text.is_read and not is_beside
-            yield _NamedPath(package, path, text.location, is_read, text.is_output, text.is_needed)
+            yield PathInFile(package, path, text.location, is_read, text.is_output, text.is_needed)
 
 
-def _paths_in_cpp(workspace: Workspace, package: Package) -> Iterator[_NamedPath]:
+def _paths_in_cpp(workspace: Workspace, package: Package) -> Iterator[PathInFile]:
     for text, at in workspace.code.by_package[package.name].texts:
         for match in _PACKAGE.finditer(f"{text} "):
-            yield _NamedPath(package, f"{SHARE}/{match[1]}/{match[2]}", at, is_read=True)
+            yield PathInFile(package, f"{SHARE}/{match[1]}/{match[2]}", at, is_read=True)
 
 
 def _is_unused_property(workspace: Workspace, source: Source, at: int) -> bool:
@@ -230,7 +230,7 @@ def _texts_given(node: StartedNode, *, is_own: bool) -> Iterator[_Text]:
                 yield _Text(parameter.value, parameter.location, is_read, is_own, is_needed)
 
 
-def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
+def _fault_of(workspace: Workspace, named: PathInFile) -> Iterator[Fact]:
     """Yield that no file is installed at a path, if this is certain."""
     package, at = named.package, named.location
     name, rest = share_parts(named.path)
@@ -261,7 +261,7 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
         yield _not_there(owner, target, at, is_output=named.is_output, is_absent=is_absent)
 
 
-def _no_package(workspace: Workspace, named: _NamedPath) -> Iterator[Mismatch]:
+def _no_package(workspace: Workspace, named: PathInFile) -> Iterator[Mismatch]:
     """Yield that the package of a path is a misspelt one of the workspace.
 
     Others may be installed; of a well-known one it is compared which launch files it has.

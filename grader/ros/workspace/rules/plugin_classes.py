@@ -27,13 +27,14 @@ _ATTRIBUTE = re.compile(r"\b(\w++)\s*+=\s*+[\"']([^\"']*+)[\"']")
 _CONTROLLERS, _HARDWARE = "controller_interface::", "hardware_interface::"
 
 
-class _Described(NamedTuple):
-    """A class that a file for pluginlib describes."""
+class _DescribedClass(NamedTuple):
+    """A class that a file for pluginlib describes, and where its element begins."""
 
     name: str  # by which pluginlib finds it
     type: str
     base: str
     package: str
+    location: Location
 
 
 class _NamedClass(NamedTuple):
@@ -47,31 +48,51 @@ class _NamedClass(NamedTuple):
 
 def plugin_class_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the classes of own packages that no file describes, and files that nothing exports."""
-    described: list[_Described] = []
+    described: list[_DescribedClass] = []
     for package in workspace.packages:
-        for source in workspace.texts.sources_of(package, (".xml",)):
-            if _DESCRIBES in source.text and source.path != package.path(MANIFEST):
-                described += _classes_in(source, package.name)
-                yield from _not_exported(package, source)
-                yield from _other_libraries(package, source)
+        for source in _descriptions(workspace, package):
+            described += _classes_in(source, package.name)
+            yield from _not_exported(package, source)
+            yield from _other_libraries(package, source)
     yield from _not_described(workspace, described)
 
 
-def _classes_in(source: Source, package: str) -> Iterator[_Described]:
+def _classes_in(source: Source, package: str) -> Iterator[_DescribedClass]:
     for element in _CLASS.finditer(source.text):
         attributes: dict[str, str] = {}
         for name, value in _ATTRIBUTE.findall(element[1]):
             attributes[name] = value
         kind, base = attributes.get("type", ""), attributes.get(_DESCRIBES, "")
-        yield _Described(attributes.get("name", kind), kind, base, package)
+        at = source.at(element.start())
+        yield _DescribedClass(attributes.get("name", kind), kind, base, package, at)
 
 
-def _not_described(workspace: Workspace, described: Sequence[_Described]) -> Iterator[Fact]:
+def described_classes(workspace: Workspace) -> Iterator[_DescribedClass]:
+    """Yield the classes that the packages describe for pluginlib."""
+    for package in workspace.packages:
+        for source in _descriptions(workspace, package):
+            yield from _classes_in(source, package.name)
+
+
+def _descriptions(workspace: Workspace, package: Package) -> Iterator[Source]:
+    """Yield the files of a package that describe classes."""
+    for source in workspace.texts.sources_of(package, (".xml",)):
+        if _DESCRIBES in source.text and source.path != package.path(MANIFEST):
+            yield source
+
+
+def named_classes(workspace: Workspace) -> Iterator[_NamedClass]:
+    """Yield the controllers and hardware whose classes files name."""
+    yield from _controllers(workspace)
+    yield from _hardware(workspace)
+
+
+def _not_described(workspace: Workspace, described: Sequence[_DescribedClass]) -> Iterator[Fact]:
     """Yield the names of classes that their own package does not describe.
 
     Only of a package that describes classes of the same kind, and makes no descriptions.
     """
-    for wanted in (*_controllers(workspace), *_hardware(workspace)):
+    for wanted in named_classes(workspace):
         prefix = re.split(r"/|::", wanted.name, maxsplit=1)[0]
         names = [
             each.name
