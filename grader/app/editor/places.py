@@ -49,6 +49,12 @@ def _without_lines(look: Look, place: TextPlace, numbers: Collection[int]) -> Lo
     return look.again(overlaid(look.tree, {place.path: data}))
 
 
+def _lines_with_errors(look: Look, path: str) -> set[int]:
+    """Return the lines of a file with errors."""
+    errors = [finding.location for finding in look.findings if finding.severity == "error"]
+    return {location.line for location in errors if location.path == path}
+
+
 def readings(look: Look, place: TextPlace, *, keeps_line: bool) -> Iterator[Look]:
     """Yield looks at the files, the first one as they are.
 
@@ -61,11 +67,7 @@ def readings(look: Look, place: TextPlace, *, keeps_line: bool) -> Iterator[Look
         keeps_line: Whether the line of the place itself has to stay as it is.
     """
     yield look
-    errors = {
-        finding.location.line
-        for finding in look.findings
-        if finding.severity == "error" and finding.location.path == place.path
-    }
+    errors = _lines_with_errors(look, place.path)
     if not errors:
         return
     others = errors - {place.line}

@@ -44,6 +44,18 @@ def prepared(look: Look, place: TextPlace) -> lsp.Range | None:
     return place.ranges(look).range(name.location)
 
 
+def _check_places(look: Look, name: WrittenName, same: Collection[WrittenName], new: str) -> None:
+    """Raise CannotRenameError where places of a name are not known, or another has the new one."""
+    if name.kind == "parameter" and all(other.role == "use" for other in same):
+        raise CannotRenameError(f"no code declares the parameter {name.name!r} that is read here")
+    for other in look.names.named_like(same, new):
+        where = other.location.file_and_line
+        raise CannotRenameError(f"there is a {other.kind} {new!r} already, at {where}")
+    for computed in look.names.computed_like(same):
+        where = computed.location.file_and_line
+        raise CannotRenameError(f"{where} may have this {name.kind}: {computed.reason}")
+
+
 def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
     """Return the edits that give the name at a place another text, everywhere.
 
@@ -59,14 +71,7 @@ def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
     if not _VALID.fullmatch(new):
         raise CannotRenameError(f"{new!r} is no name: use letters, digits and underscores")
     same = look.names.same(name)
-    if name.kind == "parameter" and all(other.role == "use" for other in same):
-        raise CannotRenameError(f"no code declares the parameter {name.name!r} that is read here")
-    for other in look.names.named_like(same, new):
-        where = other.location.file_and_line
-        raise CannotRenameError(f"there is a {other.kind} {new!r} already, at {where}")
-    for computed in look.names.computed_like(same):
-        where = computed.location.file_and_line
-        raise CannotRenameError(f"{where} may have this {name.kind}: {computed.reason}")
+    _check_places(look, name, same, new)
     edits: dict[tuple[str, int, int], Edit] = {}
     for other in same:
         at = other.location

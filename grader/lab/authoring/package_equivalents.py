@@ -229,21 +229,25 @@ def _launch_python(nodes: Sequence[Mapping[str, Any]]) -> str:
         "def generate_launch_description():",
         "    return LaunchDescription([",
     ]
-    for node in nodes:
-        given = [f"package={node['pkg']!r}", f"executable={node['exec']!r}"]
-        given += [f"{name}={node[name]!r}" for name in ("name", "namespace") if name in node]
-        if "args" in node:
-            given.append(f"arguments={[_in_python(word) for word in node['args'].split()]}")
-        parameters = []
-        for row in node.get("param", ()):
-            value = _in_python(row["from"]) if "from" in row else {row["name"]: row["value"]}
-            parameters.append(value)
-        if parameters:
-            given.append(f"parameters={parameters}")
-        if "remap" in node:
-            given.append(f"remappings={[(row['from'], row['to']) for row in node['remap']]}")
-        lines.append(f"        Node({', '.join(given)}),")
+    lines += [f"        {_node_in_python(node)}," for node in nodes]
     return "\n".join([*lines, "    ])", ""])
+
+
+def _node_in_python(node: Mapping[str, Any]) -> str:
+    """Return the call that makes a node."""
+    given = [f"package={node['pkg']!r}", f"executable={node['exec']!r}"]
+    given += [f"{name}={node[name]!r}" for name in ("name", "namespace") if name in node]
+    if "args" in node:
+        given.append(f"arguments={[_in_python(word) for word in node['args'].split()]}")
+    parameters = []
+    for row in node.get("param", ()):
+        value = _in_python(row["from"]) if "from" in row else {row["name"]: row["value"]}
+        parameters.append(value)
+    if parameters:
+        given.append(f"parameters={parameters}")
+    if "remap" in node:
+        given.append(f"remappings={[(row['from'], row['to']) for row in node['remap']]}")
+    return f"Node({', '.join(given)})"
 
 
 class _PythonCode(str):

@@ -103,20 +103,23 @@ class NamePlaces:
                 del rows[row]
         return rows
 
+    def _searched(self, name: WrittenName, places: Collection[WrittenName]) -> Collection[str]:
+        """Return the files in which a name may be written elsewhere than at its places."""
+        if name.kind == _IN_FILES:
+            return {place.location.path for place in places}
+        if name.kind == "parameter":
+            owners = {place.owner.partition("/")[0] for place in places}
+            return [*files_for_parameters(self._opened.workspace, owners)]
+        return self._opened.whole_tree.files
+
     def words_left(self, places: Collection[WrittenName]) -> list[Location]:
         """Return where files have the name of some places, and no reader says what it is there."""
         name = next(iter(places))
         if name.kind not in _SEARCHED:
             return []
         named = [written for written in self._names.names if written.name == name.name]
-        paths: Collection[str] = self._opened.whole_tree.files
-        if name.kind == _IN_FILES:
-            paths = {place.location.path for place in places}
-        elif name.kind == "parameter":
-            owners = {place.owner.partition("/")[0] for place in places}
-            paths = [*files_for_parameters(self._opened.workspace, owners)]
         left = []
-        for at in words_left(paths, self._opened.source, name):
+        for at in words_left(self._searched(name, places), self._opened.source, name):
             if not any(written.covers(*at[:3]) for written in named):
                 left.append(at)
         return left

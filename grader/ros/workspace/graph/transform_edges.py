@@ -3,7 +3,7 @@
 They are what `ros2 run tf2_tools view_frames` would show.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, Literal, NamedTuple
 
 from grader.base.source import Location
@@ -60,6 +60,16 @@ class Edge(NamedTuple):
         return bool(self.parent and self.child)
 
 
+def _edges_of_publishers(
+    workspace: Workspace, launch: int, publishers: Sequence[StartedNode]
+) -> Iterator[Edge]:
+    """Yield the joints of the robots that robot_state_publishers of a launch file publish."""
+    is_certain = any(not node.frame_prefix and publishes_as_named(node) for node in publishers)
+    topics = [node.topic("joint_states") for node in publishers]
+    states = tuple(topic for topic in topics if topic is not None)
+    yield from _edges_of_robots(workspace, launch, states, is_certain=is_certain)
+
+
 def edges_in(workspace: Workspace, launch: int) -> Iterator[Edge]:
     """Yield the transforms of the nodes and controllers of a launch file. Raises NotDecided."""
     package, file = workspace.launches.roots[launch]
@@ -73,10 +83,7 @@ def edges_in(workspace: Workspace, launch: int) -> Iterator[Edge]:
         if package_row(node.package).publishes_transforms or node.frame_prefix != "":
             yield Edge("", "", launch, "program", False, node.executable, node.location)
     if publishers:
-        is_certain = any(not node.frame_prefix and publishes_as_named(node) for node in publishers)
-        topics = [node.topic("joint_states") for node in publishers]
-        states = tuple(topic for topic in topics if topic is not None)
-        yield from _edges_of_robots(workspace, launch, states, is_certain=is_certain)
+        yield from _edges_of_publishers(workspace, launch, publishers)
     yield from _broadcast_by_controllers(workspace, launch)
 
 

@@ -183,9 +183,7 @@ class GraphNames:
     def _frame(self, frame: NodeFrame) -> _Names:
         at, source = frame.location, self._source_of(frame.location.path)
         if frame.name is None:
-            texts = [part.text if part.kind == "text" else PART_UNKNOWN for part in frame.parts]
-            if any(text.strip(PART_UNKNOWN) for text in texts):
-                yield ComputedName("frame", "".join(texts), at, "code makes a frame of parts")
+            yield from _frame_of_parts(frame)
             return
         name = frame.name.removeprefix("/")
         span = span_of_name(source, at, "frame", name, "use") if source is not None else None
@@ -488,3 +486,11 @@ def _spans_of_rule(source: Source, where: Location, rule: Sequence[str]) -> list
     end = call_end(source, start)
     inside = [match for match in matches if start <= match.start() < end]
     return [(match.span("from"), match.span("to")) for match in inside or matches]
+
+
+def _frame_of_parts(frame: NodeFrame) -> Iterator[ComputedName]:
+    """Yield a frame that code makes of parts, if one of them is known."""
+    texts = [part.text if part.kind == "text" else PART_UNKNOWN for part in frame.parts]
+    if any(text.strip(PART_UNKNOWN) for text in texts):
+        reason = "code makes a frame of parts"
+        yield ComputedName("frame", "".join(texts), frame.location, reason)

@@ -207,6 +207,10 @@ class PackageNames:
                 yield from self._class(described.package, described.type, name)
         for named in named_classes(self._workspace):
             yield from self._written(named.location, "plugin", named.name, "use")
+        yield from self._components()
+
+    def _components(self) -> Iterator[WrittenName]:
+        """Yield the classes and packages of the components that launch files load."""
         for _, launch in self._workspace.launches.roots:
             for component in launch.components:
                 if component.package and component.plugin:

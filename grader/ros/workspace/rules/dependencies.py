@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from grader.base.names import near
+from grader.ros.installation.installation import FoundPackage
 from grader.ros.installation.manifest import Manifest
 from grader.ros.known.cmake_words import cmake_words
 from grader.ros.known.package_rows import package_row
@@ -58,6 +59,12 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _of_other_kind(package, package.manifest, uses)
 
 
+def _is_sought_here(required: FoundPackage) -> bool:
+    """Return whether CMake stops without a package of the workspace, in any build."""
+    is_sure = required.is_required and required.is_certain and not required.is_for_tests
+    return is_sure and not is_released(required.name)
+
+
 def _built_before(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
     """Yield the packages of the workspace that CMake needs, and that colcon may build later.
 
@@ -69,9 +76,7 @@ def _built_before(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
         return
     for required in setup.found_packages:
         needed = package.find(required.name)
-        is_sure = required.is_required and required.is_certain and not required.is_for_tests
-        is_sure = is_sure and not is_released(required.name)
-        if needed is None or needed is package or not is_sure:
+        if needed is None or needed is package or not _is_sought_here(required):
             continue
         if needed.name in _reached(workspace, package):
             continue

@@ -2,8 +2,9 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+from grader.base.source import Source
 from grader.base.text import enumerated, quoted
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.arguments import includes_others
@@ -49,6 +50,15 @@ def _of_launch_files(workspace: Workspace) -> Iterator[Fact]:
                 yield warning(LAUNCH_ARGUMENT_USED, message, source.at(unused[0].start(1)))
 
 
+def _used_arguments(sources: Iterable[Source]) -> set[str]:
+    """Return the arguments of xacro that texts use."""
+    used = set[str]()
+    for source in sources:
+        for match in _XACRO_USED.finditer(source.text):
+            used.add(match[1] or match[2])
+    return used
+
+
 def _of_xacro(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the arguments of xacro that no file of xacro in the workspace uses.
 
@@ -57,10 +67,7 @@ def _of_xacro(workspace: Workspace) -> Iterator[Mismatch]:
     sources = [*workspace.robots.xacro_sources]
     if any(includes_others(workspace, source) for source in sources):
         return
-    used = set[str]()
-    for source in sources:
-        for match in _XACRO_USED.finditer(source.text):
-            used.add(match[1] or match[2])
+    used = _used_arguments(sources)
     for source in sources:
         unused = [match for match in _XACRO_DECLARED.finditer(source.text) if match[1] not in used]
         if unused:

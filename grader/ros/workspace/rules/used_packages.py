@@ -181,13 +181,17 @@ def _imported(
     What every launch file imports does not count there.
     """
     for imported in imported_modules(workspace, package):
-        name = imported.name
-        is_ros = name in names or name.endswith("_msgs") or name in _OF_ROS
-        is_ros = is_ros or (imported.is_installed and _is_code(name))
-        is_usual = imported.is_launched and name in _OF_LAUNCH_FILES
-        is_needed = name in names or not imported.is_nested
-        if is_ros and is_needed and not is_usual:
-            yield name, imported.location
+        is_usual = imported.is_launched and imported.name in _OF_LAUNCH_FILES
+        is_needed = imported.name in names or not imported.is_nested
+        if is_needed and not is_usual and _is_of_ros(imported, names):
+            yield imported.name, imported.location
+
+
+def _is_of_ros(imported: "_ImportedModule", names: Collection[str]) -> bool:
+    """Return whether a module is that of a package of ROS 2, or of one with these names."""
+    name = imported.name
+    is_known = name in names or name.endswith("_msgs") or name in _OF_ROS
+    return is_known or (imported.is_installed and _is_code(name))
 
 
 class _ImportedModule(NamedTuple):
