@@ -38,11 +38,16 @@ def _opened(files: dict[str, str]) -> OpenedWorkspace:
 @pytest.mark.parametrize("folder", [*_LABS, _CART, *_SAMPLES], ids=lambda it: it.name)
 def test_the_text_at_a_place_is_the_name(folder: Path) -> None:
     """In every lab and sample, what is between the start and the end of a place is the name, or an
-    expression that makes it.
+    expression that makes it. A file is at its start.
     """
     opened = open_workspace(str(folder), _SIZE, {})
     for name in opened.names().names:
         text = _text_at(opened.whole_tree, name.location)
+        if name.kind in ("file", "program") and (name.role, text) == ("definition", ""):
+            at = name.location  # the file itself
+            assert (name.is_made, at.line, at.column) == (True, 1, 1)
+            assert at.path in opened.whole_tree.files
+            continue
         assert text.strip() == text != ""
         assert (text != name.name) == name.is_made, (name, text)
 
@@ -117,6 +122,7 @@ def test_links_joints_and_materials_are_used_in_a_urdf() -> None:
         "link use hand 10",
         "joint use wrist 11",
         "joint use wrist 12",
+        "plugin use a/B 13",
         "joint use shoulder 14",
     ]
 
@@ -198,7 +204,7 @@ def test_arguments_of_launch_files_are_where_they_are_written() -> None:
         "launch argument use gui 6",
         "launch argument definition gui 7",
     ]
-    assert _written(opened, ".xml") == [
+    assert _written(opened, ".launch.xml") == [
         "launch argument definition gui 1",
         "launch argument use gui 3",
     ]
@@ -207,8 +213,9 @@ def test_arguments_of_launch_files_are_where_they_are_written() -> None:
         "launch argument use gui 5",
     ]
     names = opened.names()
-    assert len({it.owner for it in names.names}) == 3
-    assert {it.location.path for it in names.same_as(names.names[0])} == {"launch/a.launch.py"}
+    arguments = [it for it in names.names if it.kind == "launch argument"]
+    assert len({it.owner for it in arguments}) == 3
+    assert {it.location.path for it in names.same_as(arguments[0])} == {"launch/a.launch.py"}
 
 
 def test_names_belong_to_their_robot() -> None:
@@ -233,7 +240,7 @@ def test_names_belong_to_their_robot() -> None:
         }
     )
     names = opened.names()
-    assert {it.owner for it in names.names} == {
+    assert {it.owner for it in names.names if it.kind in ("link", "joint")} == {
         "a/a.urdf",
         "b/b.urdf",
         "c/c.urdf.xacro",
@@ -256,6 +263,11 @@ _NOT_ALONE = {
     "plugin section",
     "node",
     "group",
+    # These are also names of files, of builds or of other packages, and are never renamed.
+    "file",
+    "package",
+    "plugin",
+    "program",
 }
 
 
