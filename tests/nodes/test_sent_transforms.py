@@ -170,6 +170,14 @@ POSES = [
     (f"{_SET}\nt.transform.translation.x += 1.0\n{_SEND}", ""),
     (f"{_SET}\nt.transform.translation = message\n{_SEND}", ""),
     (f"{_SET}\nself.fill(t)\n{_SEND}", ""),
+    (f"{_SET}\nplace = t.transform.translation\nplace.x = 1.0\n{_SEND}", ""),
+    (f"{_SET}\nt.transform.translation.x, other = 1.0, 2.0\n{_SEND}", ""),
+    (f"{_SET}\nturn(t.transform.rotation)\n{_SEND}", ""),
+    (f"{_SET}\nfill(t)\n{_SEND}", ""),
+    (
+        f"{_SET}\nt.transform.translation.x = 1.0\nprint(f'{{t}}', t.transform.translation.x)\n{_SEND}",
+        _AT_1,
+    ),
     (f"{_SET}\nt = message\n{_SEND}", ""),
     (f"u = made(1)\n{_SEND.replace('(t)', '(u)')}", ""),
     (
@@ -212,6 +220,10 @@ CPP_POSES = [
     ("t.transform.translation = reading();", ""),
     ("fill(t); t.transform.translation.x = 1.0;", ""),
     ("auto & other = t;", ""),
+    ("auto & place = t.transform.translation; place.x = 1.0;", ""),
+    ("tf2::convert(turned, t.transform.rotation);", ""),
+    ("t.transform.translation.set__x(1.0);", ""),
+    ("t.transform.translation.x = 1.0; log(t.transform.translation.x, t.header.frame_id);", _AT_1),
 ]
 
 

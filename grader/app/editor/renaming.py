@@ -79,8 +79,8 @@ def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
             raise CannotRenameError(_made(at, name.name))
         edits[at.path, at.line, at.column] = Edit(at.path, at.line, at.column, name.name, new)
     after = look.again(_with(look, edits))
-    _check_problems(look, after)
     _check_uses(look, after, same, new)
+    _check_problems(look, after)
     return place.ranges(look).workspace_edit(edits[key] for key in sorted(edits))
 
 

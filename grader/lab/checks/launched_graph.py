@@ -256,6 +256,9 @@ def _fail_without_states(launched: Launched, chain: "Sequence[GraphTransform]") 
     for topic in lacking.needs:
         ends = launched.graph.ends(_SENDS, topic)
         _check_open(launched, f"something publishes {topic}", ends, _SENDS)
+    if launched.has_commands:
+        cause = f"cannot determine statically whether something publishes {lacking.needs[0]}"
+        raise NotDecided(f"{cause}: a command of a launch file may start it", cause)
     message = f"nothing publishes {lacking.needs[0]}"
     detail = f", without which {lacking.by} has no transform"
     return failed(message, lacking.location, detail=detail, cause="states")

@@ -25,11 +25,12 @@ class Launched(NamedTuple):
     """What runs after the launch files that a criterion asks for are launched together.
 
     `failure` is why a part of it certainly does not run: what is missing may be missing for this
-    reason.
+    reason. With `has_commands`, other processes run than nodes: they may load controllers.
     """
 
     graph: "JoinedGraph"
     failure: Outcome | None
+    has_commands: bool
 
 
 def launch_together(package: Package, submission: Submission, name: str | None) -> Launched:
@@ -59,7 +60,8 @@ def launch_together(package: Package, submission: Submission, name: str | None) 
     for launch in launches:
         unrun.update(_failing_programs(package, workspace, launch))
     graph = join_launches(workspace, [launch.source.path for launch in launches], unrun)
-    return Launched(graph, next(iter([*failures, *unrun.values()]), None))
+    has_commands = any(launch.commands for launch in launches)
+    return Launched(graph, next(iter([*failures, *unrun.values()]), None), has_commands)
 
 
 def _launches_that_start(workspace: "Workspace") -> "tuple[list[Launch], list[MissingElement]]":

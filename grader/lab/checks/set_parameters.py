@@ -26,6 +26,8 @@ def takes_parameters(submission: Submission, *, refuses: bool = False) -> Outcom
     if refuses:
         does, at = "refuses values of its parameters", callbacks.refuses
         reason = "a library may check them" if callbacks.is_generated else ""
+        if callbacks.may_refuse:
+            reason = "a condition may decide that its result is successful"
     else:
         does, at = "is told when its parameters are set", callbacks.told
         is_open = callbacks.is_generated or callbacks.is_read

@@ -33,7 +33,11 @@ _VERBS: Mapping[str, str] = {
 _HARMLESS = frozenset({"service-response", "entity-kept"})
 LIFECYCLE_MANAGER = "lifecycle_manager"  # of Nav2
 # What activates a node with a lifecycle: an event of a launch file, its own code, or a process.
-_ACTIVATES = re.compile(r"TRANSITION_ACTIVATE|trigger_activate|[.>]activate\(\)|lifecycle\W+set\b")
+_ACTIVATES = re.compile(
+    r"TRANSITION_ACTIVATE|trigger_activate|[.>]activate\(\)|autostart\s*+=\s*+True|lifecycle_bringup"
+    r"|change_state|lifecycle\W{1,9}set\b[^\n]{0,99}(?:\n[^\n]{0,99}){0,3}\bactivate\b"
+)
+_SETS, _TO_ACTIVE = re.compile(r"lifecycle\W{1,9}set\b"), re.compile(r"\bactivate\b")
 _CODE = (".py", ".cpp", ".hpp", ".h")
 _Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
 
@@ -116,8 +120,12 @@ def _not_active(launch: "Launch", workspace: "Workspace", names: Sequence[str]) 
         return
     managers = [node for node in launch.nodes if node.executable == LIFECYCLE_MANAGER]
     managed, is_known = managed_nodes(workspace, managers)
+    if any(_SETS.search(text) and _TO_ACTIVE.search(text) for text in texts):
+        is_known = False
+    loaded = [component.plugin or "" for component in launch.components]
+    is_known = is_known and not any(plugin.endswith("LifecycleManager") for plugin in loaded)
     for name in names:
-        if name in managed:
+        if name.rpartition("/")[2] in managed:
             continue
         at = managers[0].location if managers else None
         if is_known and not launch.unknown:

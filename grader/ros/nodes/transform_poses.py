@@ -12,7 +12,7 @@ _ROTATION = (
     "transform.rotation.z",
     "transform.rotation.w",
 )
-_FIELDS = (*_PLACE, *_ROTATION)
+POSE_FIELDS = (*_PLACE, *_ROTATION)
 _IDENTITY: Mapping[str, float] = {"transform.rotation.w": 1.0}  # what a new message has
 _Node = TypeVar("_Node")
 
@@ -29,7 +29,7 @@ def pose_set(
         value_set: Returns what a field is set to when the transform is sent, if that is known.
         value_of: Returns the value of an expression.
     """
-    numbers = {field: _IDENTITY.get(field, 0.0) for field in _FIELDS}
+    numbers = {field: _IDENTITY.get(field, 0.0) for field in POSE_FIELDS}
     for target in targets:
         node = value_set(target) if target in numbers else None
         value = value_of(node) if node is not None else None

@@ -299,12 +299,31 @@ class Interpreter(Evaluation):
             self._block(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
 
     def _skip_branches(self, branches: Sequence[ast.stmt], scope: py.Scope) -> bool:
-        """Make unknown what branches bind of which one runs; return False if they do more."""
+        """Make unknown what branches bind of which one runs; return False if they do more.
+
+        Also if they read a name that is not bound: one of them may fail.
+        """
         names = _names_bound(branches)
-        for name in names or ():
+        if names is None or not self._has_names(branches, scope):
+            return False
+        for name in names:
             reason = f"which branch binds {name} {NOT_EVALUATED}"
             scope.names[name] = py.Unknown(reason, self.at)
-        return names is not None
+        return True
+
+    def _has_names(self, statements: Sequence[ast.stmt], scope: py.Scope) -> bool:
+        """Return whether each name that statements read is bound before."""
+        bound = set[str]()
+        for statement in statements:
+            names = [part for part in walk(statement) if isinstance(part, ast.Name)]
+            try:
+                for name in names:
+                    if isinstance(name.ctx, ast.Load) and name.id not in bound:
+                        self._name(name, scope)
+            except py.EvaluationFails:
+                return False
+            bound.update(name.id for name in names if isinstance(name.ctx, ast.Store))
+        return True
 
     def _for(self, node: ast.For, scope: py.Scope) -> None:
         items = self.evaluate(node.iter, scope)

@@ -15,7 +15,15 @@ _TOLD = re.compile(
     r"\b(?:add_post_set_parameters_callback|add_parameter_callback"
     r"|add_parameter_event_callback|on_parameter_event)\s*+\("
 )
-_REFUSES = re.compile(r"\bsuccessful\s*+=(?!=)\s*+(?!True\b|true\b)")
+_REFUSES = re.compile(
+    r"\bsuccessful\s*+=(?!=)\s*+(?!True\b|true\b)|successful\s*+\(\s*+(?!True\b|true\b|\))"
+)
+# A result that is not successful unless a statement below it says so.
+_DEFAULT = re.compile(
+    r"^([ \t]*+)\S[^\n]*SetParametersResult(?:\s*+\(\s*+\)|\s++\w++\s*+;)", re.MULTILINE
+)
+_IN_CONDITION = re.compile(r"\b(?:if|else)\b[^\n]*\bsuccessful\s*+=|\bthrow\b")
+_SUCCEEDS = re.compile(r"^([ \t]*+)\S*successful\s*+=", re.MULTILINE)
 _RANGE = re.compile(r"\b(?:floating_point_range|integer_range)\b")
 _GENERATES = re.compile(r"\bgenerate_parameter_(?:library|module)\b")
 _READS = re.compile(r"\bget_parameters?\s*+[(<]")
@@ -31,14 +39,18 @@ class _ParameterCallbacks(NamedTuple):
     refuses: Location | None
     is_generated: bool  # whether a library makes code for parameters
     is_read: bool  # whether code reads the values of parameters, perhaps again and again
+    may_refuse: bool  # whether a condition may decide that a result is successful
 
 
 def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
     """Return where the code of the packages is told of parameters, and can refuse values."""
     first: dict[re.Pattern[str], Location] = {}
+    may_refuse = False
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, (*_ENDINGS, *_BUILDS)):
             code = _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
+            if _REFUSING.search(code):
+                may_refuse = may_refuse or _may_refuse(code)
             for pattern in (_REFUSING, _TOLD, _REFUSES, _RANGE, _GENERATES, _READS):
                 match = pattern.search(code)
                 if match is not None:
@@ -49,4 +61,16 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
         can_refuse or first.get(_RANGE),
         _GENERATES in first,
         _READS in first,
+        may_refuse,
     )
+
+
+def _may_refuse(code: str) -> bool:
+    """Return whether a condition may decide that a result is successful, or an error ends it."""
+    if _IN_CONDITION.search(code):
+        return True
+    made = _DEFAULT.search(code)
+    if made is None:
+        return "SetParametersResult(**" in code
+    set_below = _SUCCEEDS.finditer(code, made.end())
+    return any(len(each[1]) > len(made[1]) for each in set_below)

@@ -95,6 +95,15 @@ class _CppSearch:
             if call.kind == "call_expression" and short in names:
                 yield call
 
+    def _own_calls(self, function: CppFunction, *names: str) -> Iterator[CppNode]:
+        """Yield the calls of functions, or of methods of the object itself or of a rate."""
+        for call in self._calls(function, *names):
+            called = call.child("function")
+            written = called.text.removeprefix("this->") if called is not None else ""
+            is_own = "." not in written and "->" not in written
+            if is_own or "rate" in written.lower():
+                yield call
+
     def _uses(self, name: str, function: CppFunction) -> list[CppNode]:
         """Return where a name is written in a function."""
         node = function.node
@@ -116,7 +125,8 @@ class _CppSearch:
             if not any(_LIFECYCLE in self._unit.meanings(base, scopes) for base in bases):
                 continue
             for method in self._methods:
-                made = next(self._calls(method, "create_publisher"), None)
+                calls = self._own_calls(method, "create_publisher")
+                made = next((call for call in calls if "::" not in called_name(call)), None)
                 if made is not None and self._unit.owner_of(method) == owner:
                     message = (
                         f"the publishers of {owner.rpartition('::')[2]} stay inactive, and send "
@@ -284,7 +294,7 @@ class _CppSearch:
 
     def _sleeping_in(self, function: CppFunction) -> Iterator[CodeFault]:
         """Yield where a callback sleeps."""
-        for call in self._calls(function, *_SLEEPING):
+        for call in self._own_calls(function, *_SLEEPING):
             if self._is_in_callback(call, function):
                 name = called_name(call)
                 callback = f"the callback {function.name}()"

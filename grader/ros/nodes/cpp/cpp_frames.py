@@ -1,5 +1,6 @@
 """The frames that functions of a C++ node publish, look up or stamp messages with."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import chain
@@ -23,6 +24,8 @@ _FIELDS: Mapping[FrameUse, str] = {
 }
 _STATIC = "StaticTransformBroadcaster"
 _SET = ("frame_id", "child_frame_id")
+_OF_POSE = re.compile(r"(?:\.|->)transform\b")
+_NUMBER_OF_POSE = re.compile(r"(?:\.|->)[xyzw]\Z")
 _MOVED = ("x", "y", "z", "w", "translation", "rotation", "transform")  # fields of a transform
 
 
@@ -161,10 +164,16 @@ def _pose_sent(name: CppNode, variables: _Variables, evaluation: CppEvaluation) 
 
 
 def _is_given_away(use: CppNode) -> bool:
-    """Return whether a function that may change a variable gets it, or a reference to it."""
-    parent = use.parent
-    if parent is None or parent.kind in ("field_expression", "declaration"):
+    """Return whether something may change a transform, or its pose, without an assignment."""
+    part, parent = use, use.parent
+    while parent is not None and parent.kind == "field_expression" and part.field == "argument":
+        part, parent = parent, parent.parent
+    if parent is None or parent.kind == "declaration":
         return False
+    if part is not use:
+        is_set = part.field == "left" and parent.kind == "assignment_expression"
+        is_of_pose = _OF_POSE.search(part.text) is not None
+        return is_of_pose and not is_set and _NUMBER_OF_POSE.search(part.text) is None
     if parent.kind == "init_declarator":
         return use.field == "value"
     if parent.kind == "argument_list" and parent.parent is not None:

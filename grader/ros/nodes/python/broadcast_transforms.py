@@ -1,7 +1,7 @@
 """The transforms that Python code gives to a broadcaster of tf2: which frame is in which one."""
 
 import ast
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -10,12 +10,13 @@ from grader.base.transforms import Transform
 from grader.ros.nodes.message_uses import given_argument
 from grader.ros.nodes.node_facts import NamePart, NodeFrame, NodeTransform
 from grader.ros.nodes.python.endpoint_names import Bindings
-from grader.ros.nodes.transform_poses import pose_set
+from grader.ros.nodes.transform_poses import POSE_FIELDS, pose_set
 from grader.ros.python.constants import dotted
 from grader.ros.python.values import Value
-from grader.ros.python.walking import walk
+from grader.ros.python.walking import children, walk
 
 SENDS = "sendTransform"
+_KEEPING = (SENDS, "append")  # what is given a transform, and does not change it
 _PARENT, _CHILD = "header.frame_id", "child_frame_id"
 _STATIC = "StaticTransformBroadcaster"
 _PARAMETERS = ("get_parameter", "declare_parameter")
@@ -98,7 +99,7 @@ def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> 
     around = method.of_class if name.startswith("self.") else method.node
     targets: set[str] = set()
     for node in walk(around):
-        if _may_set(node, name, "transform"):
+        if _may_set(node, name, "transform") or _hands_on(node, name):
             return None
         set_here: Sequence[ast.expr] = []
         if isinstance(node, ast.Assign):
@@ -160,6 +161,32 @@ def _may_set(node: ast.AST, name: str, field: str) -> bool:
         case ast.Call(func=ast.Attribute(value=ast.Name(id="self"), attr=called), args=given):
             return called != SENDS and name in map(dotted, given)
     return False
+
+
+def _hands_on(node: ast.AST, name: str) -> bool:
+    """Return whether a part of code may set the pose of a transform by another name, or unseen."""
+    start = f"{name}.transform"
+    for part in children(node):
+        written = dotted(part) if isinstance(part, ast.Name | ast.Attribute) else ""
+        if isinstance(node, ast.Attribute) or not (written == name or written.startswith(start)):
+            continue
+        is_set = not isinstance(getattr(part, "ctx", None), ast.Load)
+        if written == name:
+            is_shown = isinstance(node, ast.List | ast.Tuple | ast.FormattedValue)
+            is_sent = is_shown or _is_call_of(node, _KEEPING)
+            is_known = is_set or is_sent
+        elif is_set:
+            is_known = isinstance(node, ast.Assign | ast.AugAssign)
+        else:
+            is_known = written.removeprefix(f"{name}.") in POSE_FIELDS
+        if not is_known:
+            return True
+    return False
+
+
+def _is_call_of(node: ast.AST, names: Collection[str]) -> bool:
+    """Return whether a call is one of a method with one of these names."""
+    return isinstance(node, ast.Call) and dotted(node.func).rpartition(".")[2] in names
 
 
 def _value_made(method: SendingMethod, made: ast.expr | None, field: str) -> ast.expr | None:

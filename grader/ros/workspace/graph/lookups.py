@@ -11,7 +11,10 @@ from grader.ros.workspace.model.workspace import Workspace
 
 _CPP = (".cpp", ".hpp", ".h")
 # What looks up transforms by other calls than those that are read.
-_OTHER_LOOKUPS = (".transform(", "lookup_transform)", "lookup_transform\n", "lookup_transform,")
+_OTHER_LOOKUPS = (
+    *(".transform(", "wait_for_transform"),
+    *("lookup_transform)", "lookup_transform\n", "lookup_transform,"),
+)
 _LOOKUPS = (
     *("lookup_transform", "lookupTransform", "can_transform", "canTransform"),
     *_OTHER_LOOKUPS,
@@ -19,14 +22,18 @@ _LOOKUPS = (
 
 
 _COMMENT = re.compile(r"(?:#|//)[^\n]*")
-_INVERTS = re.compile(r"[Ii]nver(?:se|t)|conjugate|transpose|\.inv\(|\.T\b")
+_INVERTS = re.compile(r"[Ii]nver(?:se|t)|conjugate|transpose|\.inv\(|\.T\b|invXform|linalg\.solve")
 # A rotation of coordinates by hand: what a sine and a cosine are multiplied with or assigned to.
 # Half an angle is a quaternion's.
 _ROTATES = {
-    name: re.compile(rf"(?:\*|[=,])\s*+(?:[a-z]++(?:\.|::))?{name}\(([^()\n]*+)\)")
+    name: re.compile(rf"[*=,\[+-]\s*+(?:[a-z]++(?:\.|::))?{name}\(([^()\n]*+)\)")
     for name in ("sin", "cos")
 }
 _FACTOR = {name: re.compile(rf"\b{name}\(([^()\n]*+)\)\s*+\*") for name in ("sin", "cos")}
+# The conjugate of a quaternion, a cross product or a matrix by hand.
+_CONJUGATES = re.compile(
+    r"[=(,\[]\s*+-[\w.]*\.[xyz]\b|\b(?:cross|complex)\(|\.([xyz])\s*+\*\s*+\w++\.(?!\1)[xyzw]\b"
+)
 _HALF = re.compile(r"/\s*+2|0\.5|half")
 _Inverting = Literal["no", "perhaps", "yes"]
 
@@ -69,6 +76,8 @@ def _inverts(text: str) -> _Inverting:
     code = _COMMENT.sub("", text)
     if _INVERTS.search(code):
         return "yes"
+    if _CONJUGATES.search(code):
+        return "perhaps"
     for name in ("sin", "cos"):
         angles = [*_ROTATES[name].findall(code), *_FACTOR[name].findall(code)]
         if all(_HALF.search(angle) for angle in angles):

@@ -10,6 +10,7 @@ from grader.ros.workspace.rules.names import Compared, Fact, warning
 from grader.ros.workspace.rules.rule_table import OLDER_GAZEBO
 
 _PACKAGES = ("ros_gz", "ros_gz_sim", "ros_gz_bridge", "ros_gz_image", "gz_ros2_control")
+_FOR_IGNITION = frozenset(("foxy", "galactic", "humble", "iron"))  # releases
 _OLDER = ("ignition::gazebo::", "ignition-gazebo-", "libignition-gazebo-")
 _NEWER = ("gz::sim::", "gz-sim-", "libgz-sim-")
 
@@ -17,12 +18,12 @@ _NEWER = ("gz::sim::", "gz-sim-", "libgz-sim-")
 def older_gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the first plugin that has a name of Ignition beside names of Gazebo.
 
-    Gazebo loads it with a warning until a later release. Names of Gazebo are those of its packages
-    in package.xml, of programs that launch files start, or of other plugins.
+    Gazebo loads it with a warning until a later release. Names of Gazebo are those of other plugins
+    and, where only releases are stated whose packages are for it, those of its packages in
+    package.xml or of programs that launch files start: with Humble, they are for Fortress.
     """
     plugins: list[tuple[tuple[str, str], Location]] = []
-    is_newer = any(package.depends_on(name) for package in workspace.packages for name in _PACKAGES)
-    is_newer = is_newer or any(node.package in _PACKAGES for _, node in workspace.launches.nodes)
+    is_newer = _uses_packages(workspace)
     for root, place in roots(workspace):
         for plugin in root.iter("plugin"):
             workspace.charge(1)
@@ -42,3 +43,12 @@ def older_gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
     if others:
         message += f"; {counted(others, 'other file has', 'other files have')} such names, too"
     yield warning(OLDER_GAZEBO, message, at)
+
+
+def _uses_packages(workspace: Workspace) -> bool:
+    """Return whether packages of Gazebo are used, with releases where they are not for Ignition."""
+    if not workspace.releases or not _FOR_IGNITION.isdisjoint(workspace.releases):
+        return False
+    if any(node.package in _PACKAGES for _, node in workspace.launches.nodes):
+        return True
+    return any(package.depends_on(name) for package in workspace.packages for name in _PACKAGES)

@@ -44,19 +44,35 @@ def _pairs(robot: KnownRobot) -> Iterator[tuple[str, str]]:
             yield name, other
 
 
+def _common_link(configuration: Configuration, left: str, right: str) -> str | None:
+    """Return the lowest link above two links, since a robot may be turned; None for the root."""
+    above = {joint.parent for joint in configuration.chain(right)}
+    shared = [joint.parent for joint in configuration.chain(left) if joint.parent in above]
+    return shared[-1] if shared else None
+
+
+def _side(configuration: Configuration, left: str, right: str, frame: str | None) -> str:
+    """Return whether two links are on their sides in a frame, or exchanged, or neither."""
+    y_left = configuration.pose(left, relative_to=frame).translation[1]
+    y_right = configuration.pose(right, relative_to=frame).translation[1]
+    if y_left < -_LEAST and y_right > _LEAST:
+        return "exchanged"
+    return "right" if y_left > _LEAST or y_right < -_LEAST else "none"
+
+
 def _exchanged(robot: KnownRobot, pairs: list[tuple[str, str]]) -> Iterator[Mismatch]:
     """Yield that all pairs are on the other sides."""
     configuration = Configuration(robot.robot)
     wrong = []
     for left, right in pairs:
         try:
-            y_left = configuration.pose(left).translation[1]
-            y_right = configuration.pose(right).translation[1]
+            above = _common_link(configuration, left, right)
+            sides = {_side(configuration, left, right, frame) for frame in (None, above)}
         except MissingElement:
             return
-        if y_left < -_LEAST and y_right > _LEAST:
+        if sides == {"exchanged"}:
             wrong.append(left)
-        elif y_left > _LEAST or y_right < -_LEAST:
+        elif sides != {"none"}:
             return
     at = None
     for joint in robot.robot.joints:

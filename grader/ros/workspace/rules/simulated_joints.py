@@ -9,6 +9,7 @@ from grader.ros.workspace.graph.bridge_rows import BRIDGE, are_rows_known
 from grader.ros.workspace.graph.graph import graph_of
 from grader.ros.workspace.graph.started_controllers import spawned_controllers
 from grader.ros.workspace.graph.unread_ends import may_publish_type
+from grader.ros.workspace.model.launches import SPAWNERS
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.companions import may_publish_joint_states
 from grader.ros.workspace.rules.names import Compared, Fact, warning
@@ -57,6 +58,10 @@ def _may_have_states(workspace: Workspace, number: int, launch: Launch) -> bool:
     """Return whether something that a launch file starts may publish positions of joints."""
     if launch.components or spawned_controllers(workspace, number):
         return True
+    for _, other in workspace.launches.roots:  # that is launched beside it
+        for node in other.nodes if other is not launch else ():
+            if node.package == BRIDGE or node.executable in SPAWNERS:
+                return True
     for passed in launch.passed:
         is_own = workspace.installed.source_of(passed.path) is not None
         if not is_own and f"share/{_SIMULATION}/" not in f"{passed.path}/":

@@ -20,6 +20,8 @@ _OTHER_USERS = (
     "launch_configurations",
     "import_module",
 )
+_COMPUTED = re.compile(r"LaunchConfiguration\((?!\s*+(?:\w++\s*+=\s*+)?[\"']\w*+[\"']\s*+[,)])")
+_IMPORTED = re.compile(r"^\s*+(?:from|import)\s++(\w++)", re.MULTILINE)
 _XACRO_DECLARED = re.compile(r"<xacro:arg\s++name\s*+=\s*+[\"']([\w-]++)[\"']")
 _XACRO_USED = re.compile(r"\$\(arg\s++([\w-]++)|\barg\(\s*+[\"'](\w++)")
 
@@ -37,7 +39,7 @@ def _of_launch_files(workspace: Workspace) -> Iterator[Fact]:
     """Yield the arguments of launch files in Python whose names nothing else in the file has."""
     for package in workspace.packages:
         for source in workspace.texts.launch_sources(package):
-            if any(word in source.text for word in _OTHER_USERS):
+            if _may_be_used_otherwise(workspace, source):
                 continue
             yield Compared("words")
             counts = Counter(_TEXT.findall(source.text))
@@ -48,6 +50,17 @@ def _of_launch_files(workspace: Workspace) -> Iterator[Fact]:
                 noun = "argument" if len(unused) == 1 else "arguments"
                 message = f"nothing in the launch file uses the {noun} {names}"
                 yield warning(LAUNCH_ARGUMENT_USED, message, source.at(unused[0].start(1)))
+
+
+def _may_be_used_otherwise(workspace: Workspace, source: Source) -> bool:
+    """Return whether the arguments of a launch file may be used otherwise than by their names."""
+    text, name = source.text, source.path.rpartition("/")[2]
+    if any(word in text for word in _OTHER_USERS) or _COMPUTED.search(text):
+        return True
+    own = {package.name for package in workspace.packages}
+    if not own.isdisjoint(_IMPORTED.findall(text)):
+        return True
+    return any(name in other and other != text for other in workspace.texts.launch_texts)
 
 
 def _used_arguments(sources: Iterable[Source]) -> set[str]:
