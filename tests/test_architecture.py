@@ -149,7 +149,7 @@ WEIGHTS = {
     "files": 12_350,  # the end of a log, from a file, a folder or a pipe
     "lab": 100,
     "lab.authoring": 47_500,  # other ways to give nodes parameters, names and programs; points by the mean; what passed arguments do; functions of complexity at most 10; what nodes look up, spawners start and worlds have, details as comments
-    "lab.checks": 51_200,  # the poses of transforms; parameters that are set; components among nodes; functions of complexity at most 10; what connects in the graph of what is launched
+    "lab.checks": 51_500,  # what a command or a condition may do; the poses of transforms; parameters that are set; components among nodes; functions of complexity at most 10; what connects in the graph of what is launched
     "lab.documents": 10_900,
     "lab.grading": 13_000,  # what hides the base
     "lab.hints": 36_000,  # functions of complexity at most 10
@@ -165,12 +165,12 @@ WEIGHTS = {
     "ros.launch": 46_200,  # substitutions of Nav2 and changes of the environment; what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
     "ros.log": 3_800,
     "ros.mesh": 4_300,
-    "ros.nodes": 66_100,  # ends of goals in C++ and with other statements; the poses of transforms that code sends; the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions; fields of transforms of C++ read once
+    "ros.nodes": 66_600,  # poses by other names; ends of goals in C++ and with other statements; the poses of transforms that code sends; the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions; fields of transforms of C++ read once
     "ros.package": 28_050,  # interface packages that a target does not link; the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
-    "ros.python": 29_850,  # walking over its syntax in half the time; branches that only set the environment; the letters of a folder that is not known, and constants of classes
+    "ros.python": 30_000,  # names that branches lack; walking over its syntax in half the time; branches that only set the environment; the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
-    "ros.workspace": 161_400,  # 18 rules of packages and robots, names of the graph and of packages for editors, and what a rename leaves; ways of messages, and transforms of code, for checks; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file; what included files and components leave open; for editors, where topics, packages, programs, files, types and plug-ins are written, and what a rename has to lead to
+    "ros.workspace": 162_250,  # 18 rules of packages and robots, names of the graph and of packages for editors, and what a rename leaves; ways of messages, and transforms of code, for checks; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file; what included files and components leave open; for editors, where topics, packages, programs, files, types and plug-ins are written, and what a rename has to lead to
     "ros.xacro": 28_600,  # xacro:attribute, letters outside of ASCII; functions that do one thing
     "ros.xml": 13_400,  # the attributes of broken tags, end tags of macros, the attributes of newer versions of URDF
     "": 400,

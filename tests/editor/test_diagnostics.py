@@ -17,6 +17,7 @@ _TWO_MISTAKES = (
     {"REF011"},  # a program and a topic of one node
     {"PKG014", "PKG015"},  # two entries that data_files lacks
     {"URDF064", "URDF072"},  # a joint without <limit> and without <axis>
+    {"REF018", "URDF072"},  # a joint without <axis>, above a link without mass
 )
 
 

@@ -22,7 +22,7 @@ _REFUSES = re.compile(
 _DEFAULT = re.compile(
     r"^([ \t]*+)\S[^\n]*SetParametersResult(?:\s*+\(\s*+\)|\s++\w++\s*+;)", re.MULTILINE
 )
-_IN_CONDITION = re.compile(r"\b(?:if|else)\b[^\n]*\bsuccessful\s*+=|\bthrow\b")
+_CONDITION, _THROWS = re.compile(r"\b(?:if|else)\b"), re.compile(r"\bthrow\b")
 _SUCCEEDS = re.compile(r"^([ \t]*+)\S*successful\s*+=", re.MULTILINE)
 _RANGE = re.compile(r"\b(?:floating_point_range|integer_range)\b")
 _GENERATES = re.compile(r"\bgenerate_parameter_(?:library|module)\b")
@@ -67,7 +67,8 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
 
 def _may_refuse(code: str) -> bool:
     """Return whether a condition may decide that a result is successful, or an error ends it."""
-    if _IN_CONDITION.search(code):
+    lines = [line.partition("successful") for line in code.split("\n")]
+    if _THROWS.search(code) or any(word and _CONDITION.search(start) for start, word, _ in lines):
         return True
     made = _DEFAULT.search(code)
     if made is None:

@@ -21,7 +21,7 @@ _OTHER_USERS = (
     "import_module",
 )
 _COMPUTED = re.compile(r"LaunchConfiguration\((?!\s*+(?:\w++\s*+=\s*+)?[\"']\w*+[\"']\s*+[,)])")
-_IMPORTED = re.compile(r"^\s*+(?:from|import)\s++(\w++)", re.MULTILINE)
+_IMPORTED = re.compile(r"^[ \t]*+(?:from|import)\s++(\w++)", re.MULTILINE)
 _XACRO_DECLARED = re.compile(r"<xacro:arg\s++name\s*+=\s*+[\"']([\w-]++)[\"']")
 _XACRO_USED = re.compile(r"\$\(arg\s++([\w-]++)|\barg\(\s*+[\"'](\w++)")
 
@@ -57,8 +57,8 @@ def _may_be_used_otherwise(workspace: Workspace, source: Source) -> bool:
     text, name = source.text, source.path.rpartition("/")[2]
     if any(word in text for word in _OTHER_USERS) or _COMPUTED.search(text):
         return True
-    own = {package.name for package in workspace.packages}
-    if not own.isdisjoint(_IMPORTED.findall(text)):
+    modules = {package.name for package in workspace.packages}
+    if not modules.isdisjoint(_IMPORTED.findall(text)):
         return True
     return any(name in other and other != text for other in workspace.texts.launch_texts)
 
