@@ -36,6 +36,7 @@ class _Variables:
         self.function, self._unit = function, unit
         self._types: dict[str, str] = {}
         self._local: dict[str, bool] = {}
+        self._numbers: dict[str, Mapping[str, Sequence[CppNode]] | None] = {}
 
     def type_of(self, name: CppNode) -> str:
         """Return the type of a local variable or a member, as it is written.
@@ -80,15 +81,20 @@ class _Variables:
 
         The result is None where more may be set.
         """
+        if name not in self._numbers:
+            is_open = any(map(_is_given_away, self.uses_of(name)))
+            self._numbers[name] = None if is_open else self._moved.get(name, {})
+        return self._numbers[name]
+
+    @cached_property
+    def _moved(self) -> Mapping[str, Mapping[str, Sequence[CppNode]]]:
+        """What fields of poses are set to in the function, by the variable and the field."""
         values = _values_by_field(chain.from_iterable(map(self.uses_of, _MOVED)))
-        if any(map(_is_given_away, self.uses_of(name))):
-            return None
-        start = f"{name}."
-        return {
-            field.removeprefix(start): nodes
-            for field, nodes in values.items()
-            if field.startswith(start)
-        }
+        moved: dict[str, dict[str, Sequence[CppNode]]] = {}
+        for field, nodes in values.items():
+            name, _, rest = field.partition(".")
+            moved.setdefault(name, {})[rest] = nodes
+        return moved
 
     @cached_property
     def fields_of_file(self) -> Mapping[str, Sequence[CppNode]]:

@@ -26,7 +26,7 @@ public:
   {
     using std::placeholders::_1;
     using std::placeholders::_2;
-    tolerance_ = declare_parameter("goal_tolerance", 0.05);
+    tolerance_ = declare_parameter<double>("goal_tolerance", 0.05);
     base_frame_ = declare_parameter<std::string>("base_frame", "base_link");
     buffer_ = std::make_unique<tf2_ros::Buffer>(get_clock());
     listener_ = std::make_shared<tf2_ros::TransformListener>(*buffer_);
