@@ -23,14 +23,14 @@ _LOOKUPS = (
 
 _COMMENT = re.compile(r"(?:#|//)[^\n]*")
 _INVERTS = re.compile(r"[Ii]nver(?:se|t)|conjugate|transpose|\.inv\(|\.T\b|invXform|linalg\.solve")
-# A rotation of coordinates by hand: what a sine and a cosine are multiplied with or assigned to.
-# Half an angle is a quaternion's.
+# A rotation of coordinates without a library: what a sine and a cosine are multiplied with or
+# assigned to. Half an angle is a quaternion's.
 _ROTATES = {
     name: re.compile(rf"[*=,\[+-]\s*+(?:[a-z]++(?:\.|::))?{name}\(([^()\n]*+)\)")
     for name in ("sin", "cos")
 }
 _FACTOR = {name: re.compile(rf"\b{name}\(([^()\n]*+)\)\s*+\*") for name in ("sin", "cos")}
-# The conjugate of a quaternion, a cross product or a matrix by hand.
+# The conjugate of a quaternion, a cross product or a matrix, without a library.
 _CONJUGATES = re.compile(
     r"[=(,\[]\s*+-[\w.]*\.[xyz]\b|\b(?:cross|complex)\(|\.([xyz])\s*+\*\s*+\w++\.(?!\1)[xyzw]\b"
 )

@@ -192,7 +192,7 @@ class GraphNames:
             yield written_name(source, span, "frame", name, role)
 
     def _own_nodes(self) -> Iterator[tuple[StartedNode, NodeFacts, int]]:
-        """Yield the nodes of own code as they are started, also by hand where no launch does."""
+        """Yield the nodes of own code as they are started, also those that no launch file starts."""
         code, launched = self._workspace.code, set[tuple[str, str]]()
         for number, node in self._started_programs():
             owner = self._workspace.package_of(node)

@@ -48,12 +48,17 @@ def mass_facts(workspace: Workspace) -> Iterator[Fact]:
                     yield wrong
 
 
-def _centre_outside(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
-    """Yield that the centre of mass is outside of the box around all shapes of a link."""
+def _placed_shapes(link: Link) -> list[PlacedShape]:
+    """Return the shapes of a link in its frame; nothing if one is a mesh, of unknown size."""
     elements: list[Visual | Collision] = [*link.visuals, *link.collisions]
     if any(isinstance(element.geometry, Mesh) for element in elements):
-        return
-    placed = [PlacedShape(shape, origin.placed_in()) for shape, origin in with_volume(elements)]
+        return []
+    return [PlacedShape(shape, origin.placed_in()) for shape, origin in with_volume(elements)]
+
+
+def _centre_outside(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
+    """Yield that the centre of mass is outside of the box around all shapes of a link."""
+    placed = _placed_shapes(link)
     if not placed:
         return
     centre = inertial.origin.placed_in().translation
@@ -78,10 +83,7 @@ def _too_large(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
 
     A moment of inertia is at most the mass by the square of the distance of its farthest part.
     """
-    elements: list[Visual | Collision] = [*link.visuals, *link.collisions]
-    if any(isinstance(element.geometry, Mesh) for element in elements):
-        return
-    placed = [PlacedShape(shape, origin.placed_in()) for shape, origin in with_volume(elements)]
+    placed = _placed_shapes(link)
     if not placed:
         return
     centre = inertial.origin.placed_in().translation
