@@ -192,7 +192,7 @@ class GraphNames:
             yield written_name(source, span, "frame", name, role)
 
     def _own_nodes(self) -> Iterator[tuple[StartedNode, NodeFacts, int]]:
-        """Yield the nodes of own code as they are started, also those that no launch file starts."""
+        """Yield the nodes of own code as they are started, also where no launch file does so."""
         code, launched = self._workspace.code, set[tuple[str, str]]()
         for number, node in self._started_programs():
             owner = self._workspace.package_of(node)
