@@ -37,7 +37,8 @@ _ACTIVATES = re.compile(
     r"TRANSITION_ACTIVATE|trigger_activate|[.>]activate\(\)|autostart\s*+=\s*+True|lifecycle_bringup"
     r"|change_state|lifecycle\W{1,9}set\b[^\n]{0,99}(?:\n[^\n]{0,99}){0,3}\bactivate\b"
 )
-_SETS, _TO_ACTIVE = re.compile(r"lifecycle\W{1,9}set\b"), re.compile(r"\bactivate\b")
+_SETS_STATE = re.compile(r"lifecycle\W{1,9}set\b")
+_NAMES_ACTIVE = re.compile(r"\bactivate\b")
 _CODE = (".py", ".cpp", ".hpp", ".h")
 _Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
 
@@ -120,7 +121,7 @@ def _not_active(launch: "Launch", workspace: "Workspace", names: Sequence[str]) 
         return
     managers = [node for node in launch.nodes if node.executable == LIFECYCLE_MANAGER]
     managed, is_known = managed_nodes(workspace, managers)
-    if any(_SETS.search(text) and _TO_ACTIVE.search(text) for text in texts):
+    if any(_SETS_STATE.search(text) and _NAMES_ACTIVE.search(text) for text in texts):
         is_known = False
     loaded = [component.plugin or "" for component in launch.components]
     is_known = is_known and not any(plugin.endswith("LifecycleManager") for plugin in loaded)

@@ -22,7 +22,8 @@ _REFUSES = re.compile(
 _DEFAULT = re.compile(
     r"^([ \t]*+)\S[^\n]*SetParametersResult(?:\s*+\(\s*+\)|\s++\w++\s*+;)", re.MULTILINE
 )
-_CONDITION, _THROWS = re.compile(r"\b(?:if|else)\b"), re.compile(r"\bthrow\b")
+_CONDITION = re.compile(r"\b(?:if|else)\b")
+_THROWS = re.compile(r"\bthrow\b")
 _SUCCEEDS = re.compile(r"^([ \t]*+)\S*successful\s*+=", re.MULTILINE)
 _RANGE = re.compile(r"\b(?:floating_point_range|integer_range)\b")
 _GENERATES = re.compile(r"\bgenerate_parameter_(?:library|module)\b")
