@@ -158,13 +158,13 @@ def _reframe_link(link: Link, T_link_other: Transform) -> Link:
         return link
     back = T_link_other.inverse()
     visuals = tuple(
-        replace(visual, origin=_reframe_origin(back, visual.origin)) for visual in link.visuals
+        visual._replace(origin=_reframe_origin(back, visual.origin)) for visual in link.visuals
     )
     return replace(
         link,
         visuals=visuals,
         collisions=tuple(
-            replace(collision, origin=_reframe_origin(back, collision.origin))
+            collision._replace(origin=_reframe_origin(back, collision.origin))
             for collision in link.collisions
         ),
     )
@@ -174,7 +174,7 @@ def _reframe_joint(joint: Joint, T_parent_other: Transform, T_child_other: Trans
     if joint.origin is None or (T_parent_other, T_child_other) == (IDENTITY, IDENTITY):
         return joint
     T_parent_child = joint.origin.placed_in(T_parent_other.inverse()) @ T_child_other
-    origin = replace(joint.origin, xyz=T_parent_child.translation, rpy=T_parent_child.rpy)
+    origin = joint.origin._replace(xyz=T_parent_child.translation, rpy=T_parent_child.rpy)
     return replace(
         joint,
         origin=origin,
@@ -184,4 +184,4 @@ def _reframe_joint(joint: Joint, T_parent_other: Transform, T_child_other: Trans
 
 def _reframe_origin(T: Transform, origin: Origin) -> Origin:
     moved = origin.placed_in(T)
-    return replace(origin, xyz=moved.translation, rpy=moved.rpy)
+    return origin._replace(xyz=moved.translation, rpy=moved.rpy)

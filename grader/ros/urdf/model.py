@@ -10,7 +10,8 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
 from math import pi
-from typing import NamedTuple, NoReturn
+from operator import attrgetter
+from typing import NamedTuple, NoReturn, TypeVar
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.names import closest, similar_there
@@ -30,9 +31,43 @@ INERTIA = (
 
 _MAX_COMPARED = 50  # links whose names are compared
 
+_Value = TypeVar("_Value")
 
-@dataclass(frozen=True, slots=True)
-class Origin:
+
+def compared_fields(kind: type) -> tuple[str, ...]:
+    """Return the fields of a kind of element that are its values: all but its place in a file."""
+    return tuple(name for name in kind._fields if name != "location")  # type: ignore[attr-defined]
+
+
+def _compared_by_values(kind: type[_Value]) -> type[_Value]:
+    """Make elements of a kind equal if their values are.
+
+    Where they are in a file does not count. Dataclasses do the same, but to make one takes six
+    times as long as a named tuple, which all commands wait for.
+    """
+    fields = compared_fields(kind)
+    values = attrgetter(*fields)
+
+    def is_equal(self: _Value, other: object) -> bool:
+        return self.__class__ is other.__class__ and values(self) == values(other)
+
+    def shown(self: _Value) -> str:
+        named = (f"{field}={getattr(self, field)!r}" for field in fields)
+        return f"{kind.__name__}({', '.join(named)})"
+
+    methods = {
+        "__eq__": is_equal,
+        "__ne__": lambda self, other: not is_equal(self, other),
+        "__hash__": lambda self: hash((kind, values(self))),
+        "__repr__": shown,
+    }
+    for name, method in methods.items():
+        setattr(kind, name, method)
+    return kind
+
+
+@_compared_by_values
+class Origin(NamedTuple):
     """The pose of a child frame in its parent.
 
     `xyz` is in metres, `rpy` in radians about fixed axes.
@@ -40,7 +75,7 @@ class Origin:
 
     xyz: Vector = (0.0, 0.0, 0.0)
     rpy: Vector = (0.0, 0.0, 0.0)
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
     def placed_in(self, T_frame_parent: Transform = IDENTITY) -> Transform:
         """Return T_frame_child, of the frame that it places in its parent.
@@ -55,12 +90,12 @@ class Origin:
 _SAME_FRAME = Origin()
 
 
-@dataclass(frozen=True, slots=True)
-class Box:
+@_compared_by_values
+class Box(NamedTuple):
     """A box about its centre; `size` is the full edge lengths along x, y, z in metres."""
 
     size: Vector
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
     @property
     def volume(self) -> float:
@@ -74,13 +109,13 @@ class Box:
         return self.size.count(0.0) >= 2
 
 
-@dataclass(frozen=True, slots=True)
-class Cylinder:
+@_compared_by_values
+class Cylinder(NamedTuple):
     """A cylinder about its centre, its axis along z; lengths in metres."""
 
     radius: float
     length: float
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
     @property
     def volume(self) -> float:
@@ -93,8 +128,8 @@ class Cylinder:
         return self.radius == 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class Capsule:
+@_compared_by_values
+class Capsule(NamedTuple):
     """A cylinder about its centre with a half sphere at each end, its axis along z.
 
     The length is that of the cylinder alone, as in SDF; lengths in metres.
@@ -102,7 +137,7 @@ class Capsule:
 
     radius: float
     length: float
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
     @property
     def volume(self) -> float:
@@ -116,12 +151,12 @@ class Capsule:
         return self.radius == 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class Sphere:
+@_compared_by_values
+class Sphere(NamedTuple):
     """A sphere about its centre; its radius in metres."""
 
     radius: float
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
     @property
     def volume(self) -> float:
@@ -134,8 +169,8 @@ class Sphere:
         return self.radius == 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class Mesh:
+@_compared_by_values
+class Mesh(NamedTuple):
     """A mesh file, with a factor of its size along each axis.
 
     Only pictures open it, so to checks its extent is unknown.
@@ -143,7 +178,7 @@ class Mesh:
 
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
     @property
     def is_empty(self) -> bool:
@@ -188,8 +223,8 @@ class Material:
     unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
-class Visual:
+@_compared_by_values
+class Visual(NamedTuple):
     """One shape that a link shows, placed in its frame.
 
     `material` is resolved; None if ROS 2 has no colour for it, or cannot read it.
@@ -200,26 +235,26 @@ class Visual:
     material: Material | None = None
     material_name: str = ""
     has_unreadable_colour: bool = False
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Collision:
+@_compared_by_values
+class Collision(NamedTuple):
     """One shape that a link collides with."""
 
     geometry: Geometry
     origin: Origin = _SAME_FRAME
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Inertial:
+@_compared_by_values
+class Inertial(NamedTuple):
     """Mass in kilograms, centre of mass, and ixx, ixy, ixz, iyy, iyz, izz in kg m^2."""
 
     mass: float
     inertia: tuple[float, float, float, float, float, float]
     origin: Origin = _SAME_FRAME
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,8 +279,8 @@ class Link:
         return self
 
 
-@dataclass(frozen=True, slots=True)
-class Limit:
+@_compared_by_values
+class Limit(NamedTuple):
     """A joint's range (rad or m), maximum effort (N m or N) and maximum velocity (rad/s or m/s).
 
     Here and in the other elements of a joint, a number that cannot be read is NaN.
@@ -255,30 +290,30 @@ class Limit:
     upper: float
     effort: float
     velocity: float
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Mimic:
+@_compared_by_values
+class Mimic(NamedTuple):
     """This joint's position is `multiplier` times the named joint's, plus `offset`."""
 
     joint: str
     multiplier: float = 1.0
     offset: float = 0.0
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Dynamics:
+@_compared_by_values
+class Dynamics(NamedTuple):
     """Damping (N m s/rad or N s/m) and static friction (N m or N)."""
 
     damping: float = 0.0
     friction: float = 0.0
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class SafetyController:
+@_compared_by_values
+class SafetyController(NamedTuple):
     """The range (rad or m) in which a safety controller keeps a joint.
 
     It also has its gains for position and velocity.
@@ -288,11 +323,11 @@ class SafetyController:
     soft_lower_limit: float = 0.0
     soft_upper_limit: float = 0.0
     k_position: float = 0.0
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Calibration:
+@_compared_by_values
+class Calibration(NamedTuple):
     """The positions (rad or m) at which a joint's reference switch has a rising or falling edge.
 
     A position is None if it is not given.
@@ -300,7 +335,7 @@ class Calibration:
 
     rising: float | None = None
     falling: float | None = None
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
 @dataclass(frozen=True, slots=True)

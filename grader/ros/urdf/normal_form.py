@@ -10,7 +10,6 @@ for a type of joint.
 """
 
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import fields, is_dataclass
 from typing import Any, NamedTuple
 
 from grader.base.transforms import AXES, unit
@@ -27,6 +26,7 @@ from grader.ros.urdf.model import (
     Robot,
     Sphere,
     Visual,
+    compared_fields,
 )
 from grader.ros.urdf.reader import Reading
 from grader.ros.xml.parsing import Element
@@ -202,11 +202,8 @@ def _rounded(value: Any) -> Any:
 
     They may also be in tuples and elements.
     """
-    if is_dataclass(value):
-        return tuple(
-            _rounded(getattr(value, field.name)) if field.compare else None
-            for field in fields(value)
-        )
+    if hasattr(value, "_fields"):
+        return tuple(_rounded(getattr(value, name)) for name in compared_fields(type(value)))
     if isinstance(value, tuple):
         return tuple(map(_rounded, value))
     if isinstance(value, float):

@@ -60,7 +60,7 @@ def _view_of_link(link: Link) -> Link:
 
 def _view_of_visual(visual: Visual) -> Visual:
     material = visual.material
-    return visual if material is None else replace(visual, material=_view_of_material(material))
+    return visual if material is None else visual._replace(material=_view_of_material(material))
 
 
 def _view_of_material(material: Material) -> Material:

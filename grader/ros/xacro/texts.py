@@ -27,6 +27,7 @@ from grader.ros.xacro.scopes import (
     XacroFails,
     XacroScope,
 )
+from grader.ros.xml.tinyxml2 import ILLEGAL
 
 # The tokens of xacro's lexer (`eval_text`), where ${'}'} ends at the first brace, too.
 PIECE = re.compile(
@@ -40,7 +41,6 @@ PIECE = re.compile(
 )
 TEXT_IN_QUOTES = re.compile(r"'[^']*'|\"[^\"]*\"")
 _NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
-_NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _OF_PIECE, _OF_NAME = (
     2,
     20,
@@ -290,7 +290,7 @@ def _for_xml(value: str) -> str:
 
     Raises EvaluationFails for characters that XML cannot hold.
     """
-    if not value.isprintable() and _NO_XML.search(value):
+    if not value.isprintable() and ILLEGAL.search(value):
         raise EvaluationFails("the value has a character that XML cannot hold")
     return value
 
