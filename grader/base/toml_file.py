@@ -1,15 +1,16 @@
 """Read a TOML file and its tables; all mistakes in it are one error, each with its line.
 
-tomllib does not report the lines of keys, so a mistake in a value is collected with the path of its
+tomli does not report the lines of keys, so a mistake in a value is collected with the path of its
 key, and the lines are found in the text. Values are converted by the type of their key.
 """
 
 import re
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from pathlib import Path
 from typing import Any, NamedTuple
+
+import tomli
 
 from grader.base.errors import RubricError
 from grader.base.names import did_you_mean
@@ -34,7 +35,7 @@ _TOKEN = r"""(?sx)
     | [^\s"'\#\[\]{}=.]+              # a bare key, a number, or a boolean: points, 12, true
     | [ \t\r]+
     """
-# tomllib stores each beginning of a dotted key: memory that grows with the square of its parts.
+# tomli stores each beginning of a dotted key: memory that grows with the square of its parts.
 _LONG_KEY = re.compile(
     r"""(?m)(?:^|[\[{,])[ \t]*+"""
     r"""((?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
@@ -89,10 +90,10 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
         if match := _LONG_KEY.search(text):
             line = text.count("\n", 0, match.start(1)) + 1
             raise RubricError((f"{shown}:{line}: a key has more than {_MAX_DEPTH} parts",))
-        return text, tomllib.loads(text, parse_float=Decimal)
+        return text, tomli.loads(text, parse_float=Decimal)
     except UnicodeDecodeError as error:
         raise RubricError((f"{shown}{_why_not_utf8(data, error.start)}",)) from None
-    except tomllib.TOMLDecodeError as error:
+    except tomli.TOMLDecodeError as error:
         raise RubricError((f"{shown}:{_syntax_mistake(str(error), text)}",)) from None
     except RecursionError:
         raise RubricError((f"{shown}: lists or tables are nested too deeply",)) from None
@@ -138,7 +139,7 @@ def _also(lines: Sequence[int]) -> str:
 
 
 def _syntax_mistake(error: str, text: str) -> str:
-    """Return the place of the mistake that a message of tomllib is about.
+    """Return the place of the mistake that a message of tomli is about.
 
     Also returns what it means, and the line.
     """
@@ -245,7 +246,7 @@ def _key_names(tokens: list[str]) -> list[str]:
     """Return the keys that tokens stand for, quoted ones without their quotes."""
     names = [token for token in tokens if token != "."][:_MAX_DEPTH]
     return [
-        next(iter(tomllib.loads(f"{token}=0"))) if token[0] in "\"'" else token for token in names
+        next(iter(tomli.loads(f"{token}=0"))) if token[0] in "\"'" else token for token in names
     ]
 
 

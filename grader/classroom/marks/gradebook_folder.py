@@ -9,7 +9,6 @@ import errno
 import json
 import os
 import sys
-import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, fields
@@ -17,6 +16,8 @@ from datetime import datetime
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
+
+import tomli
 
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
@@ -196,8 +197,8 @@ def read_settings(folder: Path) -> ClassSettings:
     file = folder / CLASS_FILE
     shown = printable_path(file)
     try:
-        data = tomllib.loads(read_capped(file, _MAX_SIZE, advice="").decode())
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        data = tomli.loads(read_capped(file, _MAX_SIZE, advice="").decode())
+    except (UnicodeDecodeError, tomli.TOMLDecodeError) as error:
         raise InputError(f"{shown} is not TOML: {printable(str(error))}") from None
     if not data:
         raise InputError(

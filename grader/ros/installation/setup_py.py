@@ -7,13 +7,14 @@ also depends on the other arguments of setup(), on setup.cfg and on pyproject.to
 import ast
 import posixpath
 import re
-import tomllib
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from configparser import ConfigParser, Error
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import PurePosixPath
+
+import tomli
 
 from grader.base.errors import InputError
 from grader.base.names import closest, did_you_mean
@@ -794,8 +795,8 @@ def _option_findings(section: str, others: set[str], at: Position) -> Iterator[_
 
 def _toml_findings(text: str, call: Call) -> Iterator[_Finding]:
     try:
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+        table = tomli.loads(text)
+    except tomli.TOMLDecodeError as error:
         yield f"pyproject.toml cannot be read: {error}"
         return
     tools = table.get("tool", {})

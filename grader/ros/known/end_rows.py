@@ -5,11 +5,12 @@ compare is in `packages`. The file of one package is read when it is needed.
 """
 
 import os
-import tomllib
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
+
+import tomli
 
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.known.typed_rows import read_row
@@ -125,7 +126,7 @@ def packages_with_ends() -> tuple[str, ...]:
 @cache
 def _ends_of_package(package: str) -> _EndsOfPackage:
     text = (FOLDER / f"{package}{_ENDING}").read_text("utf-8")
-    return read_row(_EndsOfPackage, tomllib.loads(text))
+    return read_row(_EndsOfPackage, tomli.loads(text))
 
 
 def opened_ends(package: str, program: str) -> OpenedEnds | None:

@@ -9,11 +9,12 @@ messages, and what one reader needs.
 
 import os
 import re
-import tomllib
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any, Literal
+
+import tomli
 
 FOLDER = Path(__file__).with_name("packages")
 _INDEX = FOLDER.with_name("index.toml")
@@ -46,7 +47,7 @@ def packages_with_files() -> frozenset[str]:
 
 @cache
 def _index() -> Mapping[str, list[str]]:
-    return tomllib.loads(_INDEX.read_text("utf-8"))
+    return tomli.loads(_INDEX.read_text("utf-8"))
 
 
 def packages_with(key: IndexedKey) -> list[str]:
@@ -56,7 +57,7 @@ def packages_with(key: IndexedKey) -> list[str]:
 
 def facts_in_file(package: str) -> dict[str, Any]:
     """Return the facts at the start of the file of a package that has one."""
-    return tomllib.loads(split_facts(_text_of(package))[0])
+    return tomli.loads(split_facts(_text_of(package))[0])
 
 
 def tables_in_file(package: str) -> Mapping[str, Any]:
@@ -66,7 +67,7 @@ def tables_in_file(package: str) -> Mapping[str, Any]:
 
 @cache
 def _read_tables(package: str) -> Mapping[str, Any]:
-    return tomllib.loads(split_facts(_text_of(package))[1])
+    return tomli.loads(split_facts(_text_of(package))[1])
 
 
 def _text_of(package: str) -> str:

@@ -1,10 +1,11 @@
 """The releases of ROS 2, and the names that not all of them have."""
 
-import tomllib
 from collections.abc import Collection, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Literal, NamedTuple, get_args
+
+import tomli
 
 from grader.base.text import enumerated
 
@@ -169,6 +170,6 @@ def _row_with(kind: NameKind, name: str) -> Sequence[_ReleaseName]:
 @cache
 def _rows(kind: NameKind) -> list[list[_ReleaseName]]:
     rows = []
-    for row in tomllib.loads(_FILE.read_text("utf-8"))[kind]:
+    for row in tomli.loads(_FILE.read_text("utf-8"))[kind]:
         rows.append([_ReleaseName(**name) for name in row])
     return rows

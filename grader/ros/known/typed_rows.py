@@ -1,11 +1,12 @@
 """Tables of TOML as typed rows: each key is a field of the row, and each value has its type."""
 
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, TypeVar, get_args, get_origin
+
+import tomli
 
 _Row = TypeVar("_Row")
 _Reading = Callable[[Any], Any]
@@ -47,7 +48,7 @@ def read_row(kind: Callable[..., _Row], table: Mapping[str, Any]) -> _Row:
 def read_file(kind: Callable[..., _Row], name: str) -> _Row:
     """Return a file of this folder as a row. Raises ValueError."""
     text = Path(__file__).with_name(f"{name}.toml").read_text("utf-8")
-    return read_row(kind, tomllib.loads(text))
+    return read_row(kind, tomli.loads(text))
 
 
 def read_typed(hint: Any, value: Any) -> Any:
