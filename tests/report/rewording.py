@@ -86,10 +86,9 @@ def _urdf(old: Urdf, words: Words, path: Words) -> Urdf:
     renamed = replace(
         robot,
         name=words(),
-        links=tuple(replace(link, name=links[link.name]) for link in robot.links),
+        links=tuple(link._replace(name=links[link.name]) for link in robot.links),
         joints=tuple(
-            replace(
-                joint,
+            joint._replace(
                 name=joints[joint.name],
                 parent=links.get(joint.parent, joint.parent),
                 child=links.get(joint.child, joint.child),

@@ -165,7 +165,9 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     An argument whose key is a keyword of Python, such as `not`, has an underscore behind it in the
     function: `not_`. Raises InputError for a signature that is no schema.
     """
-    hints = get_type_hints(function, include_extras=True)
+    hints = function.__annotations__
+    if any(isinstance(hint, str) for hint in hints.values()):
+        hints = get_type_hints(function, include_extras=True)
     subject, *rest = inspect.signature(function).parameters.values()
     for parameter in (subject, *rest):
         if parameter.kind not in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD):

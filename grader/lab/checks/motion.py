@@ -157,7 +157,7 @@ def _as_turning(robot: Configuration, link: str) -> Configuration:
     if joint is None:
         return robot
     known = {key: part for key, part in joint.unresolved.items() if key != "@type"}
-    turning = replace(joint.known, type="continuous", unresolved=known)
+    turning = joint.known._replace(type="continuous", unresolved=known)
     joints = (turning if other is joint.known else other for other in robot.known.joints)
     return Configuration(
         replace(robot.known, joints=tuple(joints)), robot.positions, is_guarded=robot.is_guarded

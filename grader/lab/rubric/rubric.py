@@ -97,7 +97,7 @@ class ReferenceSolution:
         return self._others[key]
 
 
-@dataclass(frozen=True)  # without slots, for what is computed once
+@dataclass(frozen=True, repr=False)  # without slots, for what is computed once
 class Rubric:
     """A lab as data: which facts are checked, in which order, and what each is worth.
 
@@ -117,7 +117,7 @@ class Rubric:
     criteria: tuple[Criterion, ...]
     urdf: str  # the path of the graded URDF in its package
     reference: str  # the path of the reference solution; empty without one
-    data: bytes = field(repr=False)  # of the file
+    data: bytes  # of the file
     path: Path = field(compare=False)  # of the file
     package: str = ""  # the name of the graded package
     packages: tuple[
@@ -134,13 +134,11 @@ class Rubric:
     ignored: tuple[Ignored, ...] = ()  # mutants that `grader rubric test` lets pass
     distro: Release = "jazzy"  # the release of ROS 2
     transforms: tuple[str, ...] = ()  # launch files whose static transforms are part of the robot
-    solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
+    solution: ReferenceSolution | None = field(default=None, compare=False)
     links: frozenset[str] = frozenset()  # that criteria name
     # the packages of other people whose programs criteria name
     installed: frozenset[str] = frozenset()
-    _memory: Memory = field(
-        default_factory=Memory, init=False, compare=False, repr=False
-    )  # of its submissions
+    _memory: Memory = field(default_factory=Memory, init=False, compare=False)  # of its submissions
 
     @property
     def lab(self) -> Lab:

@@ -78,7 +78,7 @@ def _boxed(link: Link, scene: Scene) -> Link:
     for body in boxes:
         T_link_shape = T_link_frame @ body.T_frame_shape
         shown.append(Visual(body.shape, Origin(T_link_shape.translation, T_link_shape.rpy)))
-    return replace(link, visuals=tuple(shown), collisions=())
+    return link._replace(visuals=tuple(shown), collisions=())
 
 
 def _upright(up: Vector) -> Rotation:

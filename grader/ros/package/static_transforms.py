@@ -147,7 +147,7 @@ def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
     part = {
         "origin": UnresolvedPart(f"{reason}, and the one that tf2 gets last counts", frame.location)
     }
-    both = replace(before.known, origin=None, unresolved={**before.known.unresolved, **part})
+    both = before.known._replace(origin=None, unresolved={**before.known.unresolved, **part})
     return replace(
         robot,
         joints=tuple(

@@ -160,8 +160,7 @@ def _reframe_link(link: Link, T_link_other: Transform) -> Link:
     visuals = tuple(
         visual._replace(origin=_reframe_origin(back, visual.origin)) for visual in link.visuals
     )
-    return replace(
-        link,
+    return link._replace(
         visuals=visuals,
         collisions=tuple(
             collision._replace(origin=_reframe_origin(back, collision.origin))
@@ -175,8 +174,7 @@ def _reframe_joint(joint: Joint, T_parent_other: Transform, T_child_other: Trans
         return joint
     T_parent_child = joint.origin.placed_in(T_parent_other.inverse()) @ T_child_other
     origin = joint.origin._replace(xyz=T_parent_child.translation, rpy=T_parent_child.rpy)
-    return replace(
-        joint,
+    return joint._replace(
         origin=origin,
         axis=T_child_other.unrotate(joint.axis) if joint.axis is not None else None,
     )

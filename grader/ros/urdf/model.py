@@ -32,11 +32,13 @@ INERTIA = (
 _MAX_COMPARED = 50  # links whose names are compared
 
 _Value = TypeVar("_Value")
+_PLACES = ("location", "axis_location", "unresolved")  # fields that are no values
 
 
 def compared_fields(kind: type) -> tuple[str, ...]:
-    """Return the fields of a kind of element that are its values: all but its place in a file."""
-    return tuple(name for name in kind._fields if name != "location")  # type: ignore[attr-defined]
+    """Return the fields of a kind of element that are its values: all but places in a file."""
+    fields: tuple[str, ...] = getattr(kind, "_fields")  # noqa: B009  of a named tuple
+    return tuple(name for name in fields if name not in _PLACES)
 
 
 def _compared_by_values(kind: type[_Value]) -> type[_Value]:
@@ -207,10 +209,11 @@ class UnresolvedPart(NamedTuple):
 # The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in
 # a <visual>, "" for more children than are known. Empty for a plain URDF.
 UnresolvedParts = Mapping[str, UnresolvedPart]
+NOTHING_OPEN: UnresolvedParts = {}
 
 
-@dataclass(frozen=True, slots=True)
-class Material:
+@_compared_by_values
+class Material(NamedTuple):
     """A colour with channels in 0..1, red, green, blue, alpha.
 
     `texture` is a file name, never opened.
@@ -219,8 +222,8 @@ class Material:
     name: str
     rgba: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
     texture: str = ""
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
-    unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
+    location: LazyLocation | None = None
+    unresolved: UnresolvedParts = NOTHING_OPEN
 
 
 @_compared_by_values
@@ -257,8 +260,8 @@ class Inertial(NamedTuple):
     location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Link:
+@_compared_by_values
+class Link(NamedTuple):
     """A rigid body, whose frame all of its shapes and its centre of mass are placed in.
 
     >>> visual = Visual(Cylinder(0.1, 0.05), Origin((0.0, 0.0, 0.025)))
@@ -270,8 +273,8 @@ class Link:
     visuals: tuple[Visual, ...] = ()
     collisions: tuple[Collision, ...] = ()
     inertial: Inertial | None = None
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
-    unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
+    location: LazyLocation | None = None
+    unresolved: UnresolvedParts = NOTHING_OPEN
 
     @property
     def known(self) -> "Link":
@@ -338,8 +341,8 @@ class Calibration(NamedTuple):
     location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Joint:
+@_compared_by_values
+class Joint(NamedTuple):
     """A joint between two links; its frame is the child link's frame.
 
     `origin` places that frame in the parent's, with the joint at 0; `axis` is a direction in the
@@ -365,9 +368,9 @@ class Joint:
     dynamics: Dynamics | None = None
     safety_controller: SafetyController | None = None
     calibration: Calibration | None = None
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
-    axis_location: LazyLocation | None = field(default=None, compare=False, repr=False)
-    unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
+    location: LazyLocation | None = None
+    axis_location: LazyLocation | None = None
+    unresolved: UnresolvedParts = NOTHING_OPEN
 
     @property
     def has_position(self) -> bool:

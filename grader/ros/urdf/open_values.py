@@ -6,7 +6,7 @@ which raises NotDecided, or MissingElement where xacro refuses the text of the f
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import quoted
@@ -54,7 +54,7 @@ def guarded(robot: Robot, parents: Mapping[str, Joint]) -> tuple[Robot, dict[str
 
 def _view_of_link(link: Link) -> Link:
     if any(visual.material is not None and visual.material.unresolved for visual in link.visuals):
-        link = replace(link, visuals=tuple(map(_view_of_visual, link.visuals)))
+        link = link._replace(visuals=tuple(map(_view_of_visual, link.visuals)))
     return _LinkView(link) if link.unresolved else link
 
 
@@ -114,11 +114,12 @@ class _MaterialView(Material):
     Neither its colour nor its texture can be read.
     """
 
-    __slots__ = ("_known",)
     _known: Material
 
-    def __init__(self, known: Material) -> None:
-        _show(self, known)
+    def __new__(cls, known: Material) -> Self:
+        view = super().__new__(cls, *known)
+        view._known = known
+        return view
 
     @property
     def known(self) -> Material:
@@ -144,11 +145,12 @@ class _MaterialView(Material):
 class _LinkView(Link):
     """A link of which something is open."""
 
-    __slots__ = ("_known",)
     _known: Link
 
-    def __init__(self, known: Link) -> None:
-        _show(self, known)
+    def __new__(cls, known: Link) -> Self:
+        view = super().__new__(cls, *known)
+        view._known = known
+        return view
 
     @property
     def known(self) -> Link:
@@ -166,11 +168,12 @@ class _LinkView(Link):
 class _JointView(Joint):
     """A joint of which something is open."""
 
-    __slots__ = ("_known",)
     _known: Joint
 
-    def __init__(self, known: Joint) -> None:
-        _show(self, known)
+    def __new__(cls, known: Joint) -> Self:
+        view = super().__new__(cls, *known)
+        view._known = known
+        return view
 
     @property
     def known(self) -> Joint:
