@@ -349,7 +349,7 @@ def _reason_to_join(entry: Entry) -> str:
     return entry.id
 
 
-def result_line(report: Report) -> str:
+def result_line(report: Report, sections: ReportSections) -> str:
     """Return the result in a line.
 
     It has the points of what is decided, what they were lost by, and what is open.
@@ -358,7 +358,7 @@ def result_line(report: Report) -> str:
     """
     if report.grade is not None:
         return _result_with_grade(report)
-    sections, decided = report_sections(report), report.max_score - report.pending
+    decided = report.max_score - report.pending
     if decided == 0 and not sections.mistakes:
         return sentence(_pending_points(report)) if report.pending else "Nothing to grade."
     points = f"{format_points(report.score)} of {counted_points(decided)}"
@@ -494,13 +494,13 @@ def package_line(report: Report) -> str:
     return printable(f"package{'s' * (len(named) > 1)} {', '.join(named)}")
 
 
-def head(report: Report) -> Iterator[Line]:
+def head(report: Report, sections: ReportSections) -> Iterator[Line]:
     """Yield what a report says first.
 
     This is what is graded, the result, whether ROS 2 loads the URDF, the package, and notes.
     """
     yield Line("graded", graded_line(report))
-    yield Line("result", result_line(report))
+    yield Line("result", result_line(report, sections))
     for text in (verdict_line(report), bonus_line(report), package_line(report)):
         if text:
             yield Line("summary", text)
@@ -601,14 +601,13 @@ def other_problems(report: Report) -> list[Problem]:
     return [problem for problem in left if (problem.location, problem.message) not in reported]
 
 
-def next_command(report: Report) -> str:
+def next_command(report: Report, sections: ReportSections) -> str:
     """Return the command that explains the costliest failure, or else what is undecided.
 
     Empty without either.
     """
     if report.student and not report.rubric.is_copy_of_shipped:  # which the student does not have
         return ""
-    sections = report_sections(report)
     failed = [
         entry.result
         for entry in (*sections.mistakes, *sections.unbuilt)

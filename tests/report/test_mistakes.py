@@ -41,7 +41,10 @@ def assert_mistakes_add_up(report: Report) -> None:
 
 def test_a_faulty_check_is_no_mistake_of_the_student(tmp_path: Path) -> None:
     """The result names what a faulty check costs apart from the mistakes."""
-    assert result_line(half_points(tmp_path)).endswith(" cost 0.5, 1 faulty check costs 0.125.")
+    report = half_points(tmp_path)
+    assert result_line(report, report_sections(report)).endswith(
+        " cost 0.5, 1 faulty check costs 0.125."
+    )
 
 
 @pytest.mark.parametrize("name", REPORTED)

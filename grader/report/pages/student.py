@@ -43,7 +43,8 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
     for callout in picture.callouts if picture is not None else ():
         if callout.point is not None:
             numbers.update(dict.fromkeys(callout.names, callout.number))
-    sections = list(report_sections(report).sections)
+    described = report_sections(report)
+    sections = list(described.sections)
     entries = [entry for section in sections for entry in section.entries]
     cards = {}
     for entry in entries:
@@ -51,7 +52,7 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
             cards[result.criterion.id] = entry.id
     head = {
         role: [line.text for line in lines]
-        for role, lines in alike(content.head(report), lambda line: line.role)
+        for role, lines in alike(content.head(report, described), lambda line: line.role)
     }
     maximum = ""
     if report.counting is not None:
@@ -74,6 +75,7 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
         "kind_of": lambda block: type(block).__name__,
         "called": numbers,
         "sections": sections,
+        "next_command": content.next_command(report, described),
         "cards": cards,
         "parts": _part_cards(report) if not report.is_bare else [],
         "pictures": _pictures(report, entries),

@@ -96,9 +96,10 @@ def _entry_finding(entry: Entry, source_of: SourceOf, base: Base) -> Annotation:
 
 def _overview(report: Report) -> str:
     """Return the lines about the whole submission and the undecided criteria."""
-    lines = [line.text for line in head(report)]  # first, because the rest may be cut off
+    sections = report_sections(report)
+    lines = [line.text for line in head(report, sections)]  # first, because the rest may be cut off
     pending = ", ".join(result.criterion.id for result in report.results if result.is_open)
     if pending:
         lines.append(f"Needs manual grading: {pending}")
-    lines += [line.text for line in report_sections(report).carried]
+    lines += [line.text for line in sections.carried]
     return "\n".join((*lines, *closing_lines(report)))

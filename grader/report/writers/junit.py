@@ -14,7 +14,14 @@ from lxml import etree
 from grader.base.source import Base
 from grader.base.text import format_points, printable
 from grader.lab.grading.report import Report, Result
-from grader.report.content import closing_lines, counting_text, entries, graded_line, head
+from grader.report.content import (
+    closing_lines,
+    counting_text,
+    entries,
+    graded_line,
+    head,
+    report_sections,
+)
 from grader.report.criteria import Entry, earned_text, is_failure, plain_lines, status_of
 from grader.report.locations import archive_around
 
@@ -35,7 +42,7 @@ def render_junit(report: Report, base: Base) -> str:
     Its paths are those in the repository, where the submission is at `base`.
     """
     top = etree.Element("testsuites", {"name": graded_line(report), **_counts(report.results)})
-    said = [*(line.text for line in head(report)), *closing_lines(report)]
+    said = [*(line.text for line in head(report, report_sections(report))), *closing_lines(report)]
     parts = groupby(entries(report).values(), key=lambda entry: entry.result.criterion.part)
     suites = [(report.rubric.part(part).title, tuple(some)) for part, some in parts]
     for number, (title, some) in enumerate(suites or [(report.rubric.title, ())]):

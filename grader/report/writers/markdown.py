@@ -14,7 +14,7 @@ from grader.base.source import Location
 from grader.base.text import printable
 from grader.lab.grading.report import Report
 from grader.report import content
-from grader.report.content import report_sections
+from grader.report.content import ReportSections, report_sections
 from grader.report.criteria import (
     Answer,
     CriteriaGroup,
@@ -68,7 +68,7 @@ def overview_markdown(report: Report) -> str:
         for section in content.closing(report)
         for part in _section(section, report, answers=False)
     )
-    return "\n\n".join((*_head(report), *sections))
+    return "\n\n".join((*_head(report, report_sections(report)), *sections))
 
 
 def criterion_markdown(entry: Entry, report: Report) -> str:
@@ -78,21 +78,22 @@ def criterion_markdown(entry: Entry, report: Report) -> str:
 
 def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
     """Yield the report block by block, each of which can be the last one."""
-    yield from _head(report)
-    for section in report_sections(report).sections:
+    described = report_sections(report)
+    yield from _head(report, described)
+    for section in described.sections:
         yield from _section(section, report, answers=answers)
     passed = [folded for group in groups(report) if (folded := _fold_passed(group))]
     if passed:
         yield from ("## Passed", *passed)
     for section in content.closing(report):
         yield from _section(section, report, answers=answers)
-    command = content.next_command(report)
+    command = content.next_command(report, described)
     if command:
         yield f"Next: {code(command)}"
 
 
-def _head(report: Report) -> Iterator[str]:
-    for line in content.head(report):
+def _head(report: Report, sections: ReportSections) -> Iterator[str]:
+    for line in content.head(report, sections):
         yield _LOOKS.get(line.role, "{}").format(escape(line.text))
 
 

@@ -82,7 +82,7 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
         _show_everything(report, sections, page)
     else:
         _show_brief(report, sections, page)
-    _show_end(report, page)
+    _show_end(report, sections, page)
     page.print()
 
 
@@ -94,7 +94,7 @@ def _show_brief(report: Report, sections: ReportSections, page: Page) -> None:
     """
     is_unfinished = bool(sections.mistakes or sections.unbuilt) and not report.student
     is_short = is_unfinished and len(sections.mistakes) == 1
-    _show_start(report, page)
+    _show_start(report, sections, page)
     _show_mistakes(sections.mistakes, report, page)
     if sections.unbuilt:
         page.title(sections.unbuilt_title)
@@ -163,7 +163,7 @@ def _show_missing(missing: Sequence[Line], page: Page) -> None:
         page.inset(line.text, _LOOKS[line.role])
 
 
-def _show_start(report: Report, page: Page) -> None:
+def _show_start(report: Report, sections: ReportSections, page: Page) -> None:
     """Add what was graded, the result, and notes.
 
     The package only if the path of the URDF does not show it.
@@ -171,7 +171,7 @@ def _show_start(report: Report, page: Page) -> None:
     submission = report.submission
     rejected = ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
     page.line(content.graded_line(report) + rejected, _LOOKS["graded"])
-    page.line(content.result_line(report), _LOOKS["result"])
+    page.line(content.result_line(report, sections), _LOOKS["result"])
     if submission.package is not None and submission.package.folder:
         folder = f"{submission.package.folder}/"
     else:
@@ -363,9 +363,9 @@ def _problem_row(problem: Problem, page: Page) -> Text:
     return block(page.console, text, INDENT, Text())
 
 
-def _show_end(report: Report, page: Page) -> None:
+def _show_end(report: Report, sections: ReportSections, page: Page) -> None:
     """Add the next command and the score."""
-    command = content.next_command(report)
+    command = content.next_command(report, sections)
     for line in (f"Next: {command}" if command else "", content.bonus_line(report)):
         if line:
             page.line(line)
@@ -384,7 +384,7 @@ def _show_end(report: Report, page: Page) -> None:
 
 def _show_everything(report: Report, sections: ReportSections, page: Page) -> None:
     """Add a report, without its last lines."""
-    for line in content.head(report):
+    for line in content.head(report, sections):
         page.line(line.text, _LOOKS[line.role])
     for section in sections.sections:
         _show_section(section, report, page)
