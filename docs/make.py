@@ -201,7 +201,8 @@ def check_section(check: Check) -> Iterator[str]:
 
 def rules_in_public() -> Iterator[str]:
     """Yield how many errors each rule found in public workspaces, and the workspaces."""
-    workspaces = tomllib.loads(WORKSPACES.read_text(encoding="utf-8"))["workspace"]
+    table = tomllib.loads(WORKSPACES.read_text(encoding="utf-8"))
+    workspaces = table["workspace"]
     places: dict[tuple[str, str], Counter[bool]] = {}
     for workspace in workspaces:
         for error in workspace.get("error", ()):
@@ -212,11 +213,9 @@ def rules_in_public() -> Iterator[str]:
         name = f"[`{rule}`](problems.md#{rule})" if rule else "its only one"
         link = f"[{code}](problems.md#{code.lower()})"
         yield f"| {name} | {link} | {counts[True]} | {counts[False]} |"
-    of_errors = [rule.name for kind in EVERY_KIND for rule in rules_of(kind) if rule.kind == kind]
-    found = {rule for _, rule in places}
-    others = [f"`{name}`" for name in of_errors if name not in found]
-    yield from ("", f"These rules found none: {enumerated(others)}.", "")
     newer = tomllib.loads(NEWER_RULES.read_text(encoding="utf-8"))
+    counted = {rule for _, rule in places} | {rule["name"] for rule in newer["rule"]}
+    yield from rules_without_findings(counted, table["without_findings"])
     yield from ("Newer rules, also their warnings and notes:", "")
     yield from ("| rule | workspaces | true | false |", "|---|---|---|---|")
     for rule in newer["rule"]:
@@ -230,6 +229,18 @@ def rules_in_public() -> Iterator[str]:
         name, commit = workspace["repository"], workspace["commit"]
         count = sum(len(error["places"]) for error in workspace.get("error", ()))
         yield f"| [{name}](https://github.com/{name}/tree/{commit}) | `{commit[:12]}` | {count} |"
+
+
+def rules_without_findings(counted: set[str], without_findings: list[str]) -> Iterator[str]:
+    """Yield the rules of errors that are not counted: without findings, and not yet run."""
+    errors = [kind for kind in EVERY_KIND if kind.severity == "error"]
+    of_errors = [rule.name for kind in errors for rule in rules_of(kind) if rule.kind == kind]
+    others = [name for name in of_errors if name not in counted]
+    silent = [f"`{name}`" for name in others if name in without_findings]
+    yield from ("", f"These rules found no error: {enumerated(silent)}.", "")
+    new = [f"`{name}`" for name in others if name not in without_findings]
+    if new:
+        yield from (f"Not yet run on public workspaces: {enumerated(new)}.", "")
 
 
 def known_parameters() -> Iterator[str]:

@@ -156,13 +156,13 @@ def keys(schema: Any) -> Iterator[str]:
 
 
 def test_every_dependency_has_a_reason_and_a_licence() -> None:
-    """Each package in pyproject.toml has a line in docs/installation.md, and one of users its licence, too."""
+    """Each package in pyproject.toml has a line in docs/dependencies.md, and one of users its licence, too."""
     whole = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     project, extras = whole["project"], whole["project"]["optional-dependencies"]
     of_users = [*project["dependencies"], *extras["documents"], *extras["cluster"]]
     of_developers = chain(*extras.values(), *whole["dependency-groups"].values())
     reasons, licences = (
-        (ROOT / "docs" / "installation.md").read_text(encoding="utf-8").split("## Licences")
+        (ROOT / "docs" / "dependencies.md").read_text(encoding="utf-8").split("## Licences")
     )
     for text, needed in ((reasons, [*of_users, *of_developers]), (licences, of_users)):
         names = {re.split(r"[<>=,;\[]", requirement)[0] for requirement in needed}

@@ -53,6 +53,7 @@ ELSEWHERE = {  # beginnings of command lines that another test runs
     "twine check --strict dist/*": "test_distribution.py",
     "grader batch submissions --roster canvas.csv": "classroom/test_walkthrough.py",
     'grader mark "Anik Tagrigri"': "classroom/test_walkthrough.py",
+    'grader mark "Ilu Lopelgri"': "classroom/test_walkthrough.py",
     "grader mark 100099": "classroom/test_walkthrough.py",
     "grader review --by": "browser/test_review.py",
     "grader view submissions": "cli/test_view.py",
@@ -79,6 +80,7 @@ FOLDERS = dict.fromkeys(
     ("grader grade . ", "grader grade  ", "grader grade`"), "src/my_robot"
 )  # a student's repository
 PLACEHOLDERS = {
+    "100006": "alice",  # of the class of the walk-through
     "COMMAND": "grade",
     "EXPORTED": "canvas.csv",
     "FOLDER": "copied",
@@ -105,8 +107,7 @@ IN_TEXT = {  # commands in the text that are not run here: a test that does, or 
 }
 OTHER_PROGRAMS = {  # commands of other programs in the text of the README and of docs/: a test that runs them, or why none does
     "git clone https://github.com/urdf-grader/urdf-grader": "nothing is published yet",
-    "pip install 'urdf-grader[editor]'": "nothing is released yet",
-    "pip install '.[editor]'": "walks/editor.md installs the wheel with this extra",
+    "pip install --editable '.[editor]'": "walks/editor.md installs the wheel with this extra",
     "python -m tests.parameters.make_known CHECKOUT...": "needs checkouts of ros2_control and ros2_controllers",
     "gh repo edit YOUR-ORG/NAME --template": "needs GitHub",
     "python CHECKOUT/benchmarks/class_generator.py submissions --count 121 --kind mixed --layout canvas --lms canvas.csv": "classroom/test_walkthrough.py",

@@ -83,7 +83,11 @@ def test_a_check_has_samples(check: Check) -> None:
         assert ask(check.function, REFERENCE, **pending.arguments).status == "pending"
         assert ask(check.function, pending.failing, **pending.arguments).status == "pending"
     else:
-        case = CASE[check.name] if check.subject in ("urdf", "robot") else PACKAGE_CASE[check.name]
+        cases = CASE if check.subject in ("urdf", "robot") else PACKAGE_CASE
+        assert check.name in cases, (
+            f"no sample of {check.name}: the first row needs `scene` or `package`"
+        )
+        case = cases[check.name]
         of = (case.check, case.arguments)
         assert ask(check.function, case.passing, **case.arguments).status == "passed"
         assert ask(check.function, case.failing, **case.arguments).status == "failed"

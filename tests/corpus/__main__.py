@@ -1,6 +1,5 @@
 """Write what the cases print now, and show what changed: `python -m tests.corpus [TEXT IN THE NAME]`."""
 
-import difflib
 import re
 import shutil
 import sys
@@ -8,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tests.corpus.cases import Case, Expected, read_corpus
+from tests.corpus.cases import Case, Expected, changed_lines, read_corpus
 
 _GENERATED = re.compile(r"^(?:exit|stdout|stderr|written) = ", re.MULTILINE)
 _ROW = "[[case]]\n"
@@ -62,17 +61,10 @@ def _basic(text: str) -> str:
     )
 
 
-def _changes(before: Expected, now: Expected) -> Iterator[str]:
-    """Yield the lines that differ."""
-    for key in sorted({*before, *now}):
-        texts = before.get(key, "").splitlines(), now.get(key, "").splitlines()
-        yield from difflib.unified_diff(*texts, f"{key} before", f"{key} now", lineterm="", n=1)
-
-
 if __name__ == "__main__":
     for case in [one for one in read_corpus() if "".join(sys.argv[1:]) in one.name]:
         with TemporaryDirectory() as folder:
             found = case.outcome(Path(folder).resolve())
         if found != case.expected:
-            print(f"== {case.name}", *_changes(case.expected, found), sep="\n")
+            print(f"== {case.name}", *changed_lines(case.expected, found), sep="\n")
             write(case, found)

@@ -1,6 +1,7 @@
 """Cases of the corpus: what a user gives to the command line, and what comes back. README.md describes their form."""
 
 import atexit
+import difflib
 import json
 import shlex
 import shutil
@@ -166,6 +167,13 @@ class Case:
         if "results" in report or "attention" in report:
             return "".join(f"{line}\n" for line in results(report, self.shown))
         return done.stdout.decode(errors="backslashreplace")
+
+
+def changed_lines(before: Expected, now: Expected) -> Iterator[str]:
+    """Yield the lines that differ."""
+    for key in sorted({*before, *now}):
+        texts = before.get(key, "").splitlines(), now.get(key, "").splitlines()
+        yield from difflib.unified_diff(*texts, f"{key} before", f"{key} now", lineterm="", n=1)
 
 
 @cache

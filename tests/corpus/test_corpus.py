@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.corpus.cases import Case, read_corpus
+from tests.corpus.cases import Case, changed_lines, read_corpus
 from tests.examples import light
 from tests.samples import SAMPLES
 
@@ -29,7 +29,14 @@ def command_of(case: Case) -> tuple[str, ...]:
 @pytest.mark.parametrize("case", light(read_corpus(), is_costly), ids=lambda case: case.name)
 def test_the_case_is_as_expected(case: Case, tmp_path: Path) -> None:
     """Standard output, standard error, exit codes and written files; `python -m tests.corpus` writes them again."""
-    assert case.outcome(tmp_path) == case.expected
+    outcome = case.outcome(tmp_path)
+    if outcome != case.expected:
+        command = f"python -m tests.corpus {shlex.quote(case.name)}"
+        lines = [
+            *changed_lines(case.expected, outcome),
+            f"To expect what is printed now: {command}",
+        ]
+        pytest.fail("\n".join(lines), pytrace=False)
 
 
 def test_every_sample_has_a_row() -> None:

@@ -25,6 +25,13 @@ def test_the_errors_of_public_workspaces_are_true() -> None:
     assert verdicts[True] >= _LEAST * verdicts.total()
 
 
+def test_the_rules_without_findings_are_rules() -> None:
+    """Each rule that found no error in public workspaces is a rule, and is listed once."""
+    names = tomllib.loads(_TABLE.read_text(encoding="utf-8"))["without_findings"]
+    assert len({*names}) == len(names) > 50
+    assert {*names} <= RULES.keys()
+
+
 _RULES = ROOT / "tests/workspace/public_rules.toml"
 _LEAST_OF_RULE = 0.9  # of the findings of a rule are true
 

@@ -37,7 +37,7 @@ def test_a_code_has_the_example_of_a_rule() -> None:
 
 def test_every_rule_has_an_example() -> None:
     """Each is short, and its two sides differ; no frame is unused."""
-    assert [*EXAMPLES] == [*RULES]
+    assert [*EXAMPLES] == [*RULES], "examples are in the order of RULES, each rule has one"
     used = {"rover.launch.py"}
     for example in (*EXAMPLES.values(), *KINDS.values()):
         used |= {example.get("frame", "rover.launch.py"), *example.get("beside", {})}

@@ -19,8 +19,8 @@ from grader.app.cli.options import (
 from grader.app.cli.streams import TERMINAL, warn
 from grader.base.errors import InputError
 
-_CRITERION = "The id of the criterion; total: the whole submission; deadline: the student's own."
-_POINTS = "The points; with total also excused; with deadline a time; - withdraws a mark."
+_CRITERION = "The id of the criterion; grade: the final mark; deadline: the student's own."
+_POINTS = "The points; with grade also excused; with deadline a time; - withdraws a mark."
 _SHEET = "Write the open items into a new CSV file instead."
 
 

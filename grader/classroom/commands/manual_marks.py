@@ -4,8 +4,6 @@ Of one student, of all who submitted nothing, and of a CSV file.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import suppress
-from getpass import getuser
 from pathlib import Path
 
 from grader.base.errors import InputError
@@ -137,10 +135,6 @@ def _append_marks(book: Gradebook, marks: Iterable[Mark], by: str, warn: Warn) -
         one._replace(by=one.by or by, time=book.marks.next_time((one.student, one.criterion)))
         for one in marks
     ]
-    with suppress(
-        OSError, KeyError
-    ):  # of an account without a name: the files of two gradebooks can be merged
-        by = by or getuser()
     names.warn_without_locks(book.folder, warn)
     if new:
         append_marks(mark_file(book.folder / names.MARKS, by), new)
@@ -157,7 +151,10 @@ def _warnings(before: Gradebook, mark: Mark) -> Iterator[str]:
     ):
         what = "mark" if old.value else "comment"
         words = f"{old.value}{by_name(old.by)}: {' '.join(old.comment.split())}".strip(": ")
-        yield f"this replaces the {what} of {criterion} in {old.place}: {words}"
+        if mark.value == WITHDRAWN:
+            yield f"withdrawn: the {what} of {criterion} in {old.place}: {words}"
+        else:
+            yield f"this replaces the {what} of {criterion} in {old.place}: {words}"
     elif mark.value == WITHDRAWN:
         yield f"there was no mark of {criterion} to withdraw"
     if any(row.id == criterion and row.adjustment is not None for row in before.rubric.criteria):

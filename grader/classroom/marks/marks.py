@@ -19,6 +19,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from datetime import MAXYEAR, UTC, datetime, timedelta
 from decimal import Decimal
+from getpass import getuser
 from itertools import zip_longest
 from pathlib import Path
 from typing import NamedTuple
@@ -395,15 +396,25 @@ def _has_decimal_comma(table: Table, rows: _Rows) -> bool:
 
 
 def mark_file(folder: Path, by: str) -> Path:
-    """Return the file of a grader.
+    """Return the file of a grader; without a name, that of the login.
 
     Its name is valid on every system, and of nobody else, though systems may ignore case.
+
+    Raises InputError if the login has no name, as in a container.
     """
-    name = unicodedata.normalize("NFC", by.strip().lower())
+    name = unicodedata.normalize("NFC", (by.strip() or _login_name()).lower())
     if not _SAFE.fullmatch(name):
         digest = sha256_of(name.encode("utf-8", "surrogateescape"))[:16]
         name = f"{re.sub('[^a-z0-9_]+', '-', name).strip('-')[:40] or '_'}-{digest}"
     return folder / f"{name}.csv"
+
+
+def _login_name() -> str:
+    """Return the name of the login. Raises InputError if there is none."""
+    try:
+        return getuser()
+    except (OSError, KeyError, ImportError):  # no account: by the version of Python and the system
+        raise InputError("this login has no name: name yourself with --by NAME") from None
 
 
 def is_open_in_libreoffice(path: Path) -> bool:

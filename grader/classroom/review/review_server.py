@@ -208,10 +208,10 @@ def review_in_browser(
     if not session.places:
         return "nothing needs manual grading\n"
     warn_without_locks(session.folder, terminal.warn)
-    page = ReviewPage(session)
+    page, marks = ReviewPage(session), session.file
     with LocalServer(page, port) as server:
-        if is_open_in_libreoffice(session.file):
-            shown = printable_path(session.file)
+        if is_open_in_libreoffice(marks):
+            shown = printable_path(marks)
             terminal.warn(
                 f"{shown} is open in LibreOffice: close it, because saving it there would "
                 "remove new marks"

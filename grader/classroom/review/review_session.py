@@ -8,6 +8,7 @@ pictures. Instead of the page, a person can fill in a sheet of the open items, a
 import os
 from collections import defaultdict
 from collections.abc import Sequence
+from functools import cached_property
 from pathlib import Path
 
 from grader.base.errors import InputError
@@ -70,7 +71,6 @@ class ReviewSession:
         is_anonymous: bool = False,
     ) -> None:
         self.folder, self.by, self.answers, self.is_anonymous = folder, by, answers, is_anonymous
-        self.file = mark_file(folder / names.MARKS, by)
         self.own = dict[Key, Mark]()
         self._kept = set[Key]()  # marked since the filter was chosen: these stay in the list
         self.filter = shown
@@ -78,6 +78,11 @@ class ReviewSession:
         self._stamps: object = None
         self.refresh()
         self.show_only(shown)
+
+    @cached_property
+    def file(self) -> Path:
+        """The file of the marks. Raises InputError if nothing names the grader."""
+        return mark_file(self.folder / names.MARKS, self.by)
 
     def refresh(self) -> None:
         """Read the gradebook again if it has changed. Raises InputError."""

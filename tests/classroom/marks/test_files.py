@@ -325,6 +325,20 @@ def test_files_are_private_and_symlinks_are_not_followed(tmp_path: Path) -> None
     assert is_open_in_libreoffice(folder / "lee.csv")
 
 
+def test_a_grader_without_a_name_is_the_login(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A login without a name, as in a container with the number of a user, is refused."""
+    monkeypatch.setattr(marks, "getuser", lambda: "kim")
+    assert mark_file(Path("marks"), " ") == Path("marks/kim.csv")
+    monkeypatch.setattr(marks, "getuser", _fail)
+    assert mark_file(Path("marks"), "Lee") == Path("marks/lee.csv")
+    with pytest.raises(InputError, match="this login has no name: name yourself with --by NAME"):
+        mark_file(Path("marks"), "")
+
+
+def _fail() -> str:
+    raise KeyError("getpwuid(): uid not found: 1234")
+
+
 @given(
     st.lists(
         st.text(max_size=50)
