@@ -163,7 +163,7 @@ WEIGHTS = {
     "ros.interfaces": 4_400,  # since and until when there is a type; functions for the checks of one default
     "ros.known": 10_400,  # launch arguments that name topics and files of included launch files; keys of libraries, elements of Gazebo Classic; the packages that are released; when each table was read, and the last release that was read for it; rows of what programs open, for graphs
     "ros.launch": 46_200,  # substitutions of Nav2 and changes of the environment; what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
-    "ros.log": 3_800,
+    "ros.log": 4_050,  # names of findings beside their lines, and what keeps a started robot from being read
     "ros.mesh": 4_300,
     "ros.nodes": 66_600,  # poses by other names; ends of goals in C++ and with other statements; the poses of transforms that code sends; the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions; fields of transforms of C++ read once
     "ros.package": 28_050,  # interface packages that a target does not link; the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean

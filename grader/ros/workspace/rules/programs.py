@@ -72,7 +72,7 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             missing = _missing_program(node.package, node.executable, programs)
             either = corrections(node.executable, node.location, missing.meant)
             wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
-            yield wrong._replace(word=node.executable)
+            yield wrong._replace(word=node.executable, names=(node.package,))
     yield from _lifecycle(workspace)
 
 
@@ -90,7 +90,7 @@ def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Ite
         start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
         either = corrections(node.executable, node.location, missing.meant, start)
         wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
-        yield wrong._replace(word=node.executable)
+        yield wrong._replace(word=node.executable, names=(node.package,))
     else:
         yield from _not_executed(owner, node.executable, node.location)
 
