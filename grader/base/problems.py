@@ -94,6 +94,7 @@ class Problem(NamedTuple):
     # the call or element in which its location is, whose first line comments are beside
     around: Location | None = None
     cause: str = ""  # what it has in common with others that one mistake makes
+    names: tuple[str, ...] = ()  # by which a message of a log may mean it
 
     @property
     def code(self) -> str:

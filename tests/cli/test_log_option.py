@@ -50,7 +50,7 @@ def test_json_has_the_answers(tmp_path: Path) -> None:
         1,
     )
     assert (second["output"], second["location"]) == (None, None)
-    assert second["message"] == "no rule; nothing said"
+    assert second["message"] == "no explanation is known"
     del data["log"]
     assert data == json.loads(run(option).stdout)
 
@@ -61,7 +61,7 @@ def test_a_log_without_failures_is_said(tmp_path: Path) -> None:
     log = ("inspect", SAMPLE, "--log", tmp_path / "a.log")
     assert "no line of the log says that something fails" in words(run(log))
     (tmp_path / "a.log").write_bytes(b"[ERROR] [1.5] [a]: unheard of\n")
-    assert "line 1 of the log: no rule; nothing said" in words(run(log))
+    assert "line 1 of the log: no explanation is known" in words(run(log))
 
 
 @pytest.mark.parametrize("option", [(), ("--robot", "diffdrive")])

@@ -120,6 +120,41 @@ _PATH_AS_TEXT = (
 _AMCL = "Node(package='nav2_amcl', executable='amcl', parameters=['src/cell/config/amcl.yaml']),"
 
 
+_OF_VARIABLE = _LAUNCH.replace("import Command", "import EnvironmentVariable").replace(
+    "NODES",
+    """Node(package='cell', executable='mover',
+             arguments=[EnvironmentVariable(
+                 'ROBOT')]),""",
+)
+_LAUNCH_OF_ROBOT = """
+import os
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch_ros.actions import Node
+def generate_launch_description():
+    path = os.path.join(get_package_share_directory('cell'), 'urdf', 'arm.urdf')
+    with open(path) as file:
+        text = file.read()
+    return LaunchDescription([
+        Node(package='robot_state_publisher', executable='robot_state_publisher',
+             parameters=[{'robot_description': text}]),
+    ])
+"""
+_NO_FILE = """[ERROR] [launch]: Caught exception in launch (see debug for traceback): Caught multiple exceptions when trying to load file of format [py]:
+ - FileNotFoundError: [Errno 2] No such file or directory: '/ws/install/cell/share/cell/urdf/arm.urdf'
+"""
+_NOT_PARSED = (
+    "[robot_state_publisher-1]   what():  Unable to initialize urdf::model from robot description"
+)
+_OF_NO_TYPE = """<robot name='arm'><link name='a'/><link name='b'/>
+<joint name='j' type='fixd'><parent link='a'/><child link='b'/></joint></robot>
+"""
+_WITH_COLOUR = "<robot name='arm'><material name='m'><color rgba='9 0 0 1'/></material><link name='a'/></robot>"
+_STARTED_ROBOT = {
+    "launch/c.launch.py": _LAUNCH_OF_ROBOT,
+    "setup.py": _SETUP.replace("[('", "[('share/cell/urdf', ['urdf/arm.urdf']), ('", 1),
+    "urdf/arm.urdf": _OF_NO_TYPE,
+}
 _NO_LIBEXEC = (
     "package 'cell' found at '/ws/install/cell', but libexec directory '/ws/install/cell/lib/cell' "
     "does not exist"
@@ -164,6 +199,27 @@ _TARGETS = "install(TARGETS mover DESTINATION lib/${PROJECT_NAME})"
             "executable 'moover' not found on the libexec directory '/ws/install/cell/lib/cell' ",
             "src/cell/launch/c.launch.py:8",
             id="program",
+        ),
+        pytest.param(
+            _workspace(nodes="Node(package='cell',\n  executable='moover'),"),
+            "executable 'moover' not found on the libexec directory '/ws/install/cell/lib/cell' ",
+            "src/cell/launch/c.launch.py:9",
+            id="program in another line",
+        ),
+        pytest.param(
+            _workspace({"launch/c.launch.py": _OF_VARIABLE}),
+            "environment variable 'ROBOT' does not exist",
+            "src/cell/launch/c.launch.py:9",
+            id="variable in another line",
+        ),
+        pytest.param(
+            _workspace({"launch/c.launch.py": _LAUNCH_OF_ROBOT}),
+            _NO_FILE,
+            "src/cell/launch/c.launch.py:8",
+            id="file of a variable",
+        ),
+        pytest.param(
+            _workspace(_STARTED_ROBOT), _NOT_PARSED, "src/cell/urdf/arm.urdf:2", id="robot"
         ),
         pytest.param(
             _workspace({"config/c.yaml": _TYPES}), _NO_TYPE, "src/cell/config/c.yaml:2", id="type"
@@ -259,6 +315,23 @@ def test_the_files_explain_a_message(files: Mapping[str, str], log: str, place: 
             id="no space",
         ),
         pytest.param(_workspace(), _EMPTY, id="not started"),
+        pytest.param(
+            _workspace({**_STARTED_ROBOT, "urdf/arm.urdf": _WITH_COLOUR}),
+            _NOT_PARSED,
+            id="a robot that ROS 2 loads",
+        ),
+        pytest.param(
+            _workspace(
+                {**_STARTED_ROBOT, "urdf/arm.urdf": _WITH_COLOUR, "urdf/hand.urdf": _OF_NO_TYPE}
+            ),
+            _NOT_PARSED,
+            id="another robot",
+        ),
+        pytest.param(
+            _workspace(nodes="Node(package='cell', executable='mover', name='moover'),"),
+            "executable 'moover' not found on the libexec directory '/ws/install/cell/lib/cell' ",
+            id="a name that is no program",
+        ),
         pytest.param(_workspace(nodes=_MOVER), "ValueError: wrong", id="no traceback"),
     ],
 )
@@ -266,7 +339,7 @@ def test_what_the_files_do_not_prove_is_not_said(files: Mapping[str, str], log: 
     """The message has an answer without a place: that nothing is said."""
     [answer, *_] = _explained(files, log)
     assert (answer.location, answer.output) == (None, "")
-    assert answer.message == "no rule; nothing said"
+    assert answer.message == "no explanation is known"
 
 
 def test_what_keeps_a_node_from_publishing_a_frame_explains_it() -> None:

@@ -94,3 +94,24 @@ def test_a_misspelling_hides_no_other(
     right = _FILES["config/follower.yaml"].replace("distanse", "distance")
     changed["config/follower.yaml"] = right.replace(old, new) if "config" in file else right
     assert places(tmp_path / "left", changed) == [(file, at)]
+
+
+def test_the_module_of_an_entry_point_says_which_is_meant(tmp_path: Path) -> None:
+    """A program with the name of a module is the one that runs that, not a more similar one."""
+    entries = "'wall_runner = drive_bot.follower:main', 'followers = drive_bot.other:main'"
+    setup = _FILES["setup.py"].replace("'follower = drive_bot.follower:main'", entries)
+    other = _FILES["drive_bot/follower.py"].replace("wall_distance", "wall_distanse")
+    files = {**_FILES, "setup.py": setup, "drive_bot/other.py": other}
+    expected = [("config/follower.yaml", 3), ("launch/follow.launch.py", 10)]
+    assert sorted(places(tmp_path, files)) == expected
+    [wrong] = [problem for problem in inspected(tmp_path) if problem["code"] == "REF006"]
+    assert wrong["message"].endswith("did you mean 'wall_runner'?")
+
+
+def test_a_program_that_is_a_guess_is_not_read(tmp_path: Path) -> None:
+    """Of what the suggested program declares nothing is said: another one may be meant."""
+    launch = _FILES["launch/follow.launch.py"].replace(_NODE, "executable='the_follower'")
+    files = {**_FILES, "launch/follow.launch.py": launch}
+    assert places(tmp_path, files) == [("launch/follow.launch.py", 10)]
+    [wrong] = [problem for problem in inspected(tmp_path) if problem["code"] == "REF006"]
+    assert wrong["message"].endswith("did you mean 'follower'?")

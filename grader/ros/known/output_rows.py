@@ -27,6 +27,7 @@ class OutputRow(NamedTuple):
     sentence: str  # what it means
     rules: tuple[str, ...] = ()  # that are asked, the first that has an answer counts
     within: tuple[str, ...] = ()  # the groups that must be in the lines of the finding
+    is_of_robot: bool = False  # whether only what keeps ROS 2 from loading a started robot counts
     processes: tuple[str, ...] = ()  # one of which must be started by a launch file
     place: OutputPlace = ""
     is_place_last: bool = False  # whether it is asked after the rules

@@ -16,7 +16,9 @@ from grader.base.text import cut
 from grader.ros.known.output_rows import known_outputs
 from grader.ros.log.log_messages import LogMessage, read_messages
 from grader.ros.log.log_places import KnownMessage, paths_of_publishers, placed_answers
+from grader.ros.package.robot_file import Read
 from grader.ros.workspace.opened import OpenedWorkspace
+from grader.ros.workspace.rules.name_fixes import NameFixes
 
 _MAX_ANSWERS = 40
 _MAX_OF_A_MESSAGE = 2
@@ -74,7 +76,7 @@ def explain_log(
     unknown += [each.message for each in asked if each.message.line not in answered]
     for message in sorted(unknown, key=lambda message: message.line)[:_MAX_UNKNOWN]:
         answers.append(
-            LogAnswer(message.line, cut(message.text, _MAX_TEXT), "", "no rule; nothing said")
+            LogAnswer(message.line, cut(message.text, _MAX_TEXT), "", "no explanation is known")
         )
     return tuple(answers[:_MAX_ANSWERS])
 
@@ -134,25 +136,52 @@ def _findings_for(
     if known.row.place == "frame":
         with suppress(NotDecided):
             paths = paths_of_publishers(opened, known.groups["frame"])
+    if known.row.is_of_robot:
+        problems = [*_rejections_of_started(opened, problems)]
+    ends = NameFixes(opened.workspace)
     for rule in known.row.rules:
         of_rule = [problem for problem in problems if problem.is_meant_by(rule)]
         fitting = []
         for problem in of_rule:
-            if problem.location.path in paths or _has_names(problem, names, opened.source):
+            if problem.location.path in paths or _has_names(problem, names, opened.source, ends):
                 fitting.append(problem)
         if fitting:
             return fitting
     return []
 
 
+def _rejections_of_started(
+    opened: OpenedWorkspace, problems: Sequence[Problem]
+) -> Iterator[Problem]:
+    """Yield for what robot_state_publisher reads no robot of those that launch files start."""
+    started: set[str | None] = set()
+    for _, _, launch in opened.workspace.launches.files:
+        for named in launch.named("urdf"):
+            started.add(opened.workspace.installed.source_of(named.path or ""))
+    paths = set[str]()
+    for robot in opened.robots:
+        if isinstance(robot, Read) and robot.path in started:
+            paths.update((robot.path, *getattr(robot.reading.source, "documents", ())))
+    for problem in problems:
+        is_rejection = problem.kind.effect == "rejects" and problem.location.path in paths
+        if is_rejection or problem.rule:
+            yield problem
+
+
 def _has_names(
-    problem: Problem, names: Sequence[str], source_of: Callable[[str], Source | None]
+    problem: Problem,
+    names: Sequence[str],
+    source_of: Callable[[str], Source | None],
+    ends: NameFixes,
 ) -> bool:
-    """Return whether the lines that a finding names have each of some names as a word."""
-    texts = [problem.subject]
-    for place in (problem.location, problem.related):
-        if place is not None:
-            source = source_of(place.path)
-            texts += [place.path, source.line(place.line) if source is not None else ""]
+    """Return whether a finding, or the lines that it names, have each of some names as a word."""
+    texts = [problem.subject, *problem.names]
+    for place in (problem.location, problem.around, problem.related):
+        source = source_of(place.path) if place is not None else None
+        if place is None or source is None:
+            continue
+        start = source.offset(place.line, place.column)
+        end = ends.end_of_element(source, place, start)
+        texts += [place.path, source.line(place.line), source.text[start:end]]
     words = "\n".join(texts)
     return all(re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", words) for name in names)

@@ -21,3 +21,18 @@ def program_names(package: Package) -> list[str]:
 def meant_program(name: str, programs: Sequence[str]) -> str | None:
     """Return the one of some programs that a name may mean; None without any."""
     return closest(name, programs) or near(name, programs, "node")
+
+
+def program_of_module(package: Package, name: str) -> str | None:
+    """Return the one entry point whose module has a name; None without one, or with several."""
+    programs = {
+        entry.name
+        for entry in entry_points(package)
+        if entry.module.split(".")[-1] == name.removesuffix(".py")
+    }
+    return programs.pop() if len(programs) == 1 else None
+
+
+def surely_meant_program(package: Package, name: str) -> str | None:
+    """Return the program that the name of another one surely means; None where that is a guess."""
+    return program_of_module(package, name) or near(name, program_names(package), "node")

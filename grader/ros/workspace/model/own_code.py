@@ -10,7 +10,7 @@ from grader.ros.nodes.node_facts import NodeFacts, PackageNodes
 from grader.ros.nodes.python.python_nodes import read_nodes
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.package_interfaces import PackageInterfaces, read_interfaces
-from grader.ros.package.program_names import meant_program, program_names
+from grader.ros.package.program_names import surely_meant_program
 from grader.ros.workspace.model.installed_yaml import InstalledFiles
 from grader.ros.workspace.model.launches import MANAGER
 from grader.ros.workspace.model.text_files import MAX_YAML
@@ -161,7 +161,7 @@ class OwnCode:
 def _meant_program(owner: Package, package: str, name: str) -> str:
     if owner.has_program(package, name) is not False:
         return name
-    return meant_program(name, program_names(owner)) or name
+    return surely_meant_program(owner, name) or name
 
 
 def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:

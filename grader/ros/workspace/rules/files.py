@@ -306,20 +306,32 @@ def _not_there(
         message = f"{missing}: it installs the file as {source.path}"
         either = _folder_corrections(target, source.path, at, start)
         cause = f"{posixpath.dirname(target)} is {posixpath.dirname(source.path)}"
-        return Mismatch(FILE_INSTALLED, message, at, corrections=either, cause=cause)
+        return Mismatch(
+            FILE_INSTALLED, message, at, corrections=either, cause=cause, names=(target,)
+        )
     if source.state == "not installed":
         message = f"{missing}: no {setup.entry} names {source.path}"
         either = _install_corrections(setup, source.path, start)
         called_at = setup.location(setup.called_at)
         cause = f"{setup.entry} lacks {posixpath.dirname(source.path)}"
-        return Mismatch(FILE_INSTALLED, message, at, called_at, corrections=either, cause=cause)
+        return Mismatch(
+            FILE_INSTALLED,
+            message,
+            at,
+            called_at,
+            corrections=either,
+            cause=cause,
+            names=(target,),
+        )
     meant = similar_file(owner, name)
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"
     is_certain = is_absent and not is_output
     either = corrections(name, at, meant)
     cause = f"no file in {posixpath.dirname(target)}" if meant is None else ""
-    return Mismatch(FILE_INSTALLED, message, at, None, is_certain, either, cause=cause)
+    return Mismatch(
+        FILE_INSTALLED, message, at, None, is_certain, either, cause=cause, names=(target,)
+    )
 
 
 def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Iterator[Mismatch]:

@@ -70,7 +70,7 @@ def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
                 "lookup fails"
             )
             at = lookup.location
-            yield warning(TRANSFORM_CONNECTED, message, at)
+            yield warning(TRANSFORM_CONNECTED, message, at)._replace(names=(target, source))
 
 
 def _lookups(workspace: Workspace) -> Iterator[_Lookup]:

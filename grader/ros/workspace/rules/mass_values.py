@@ -1,5 +1,6 @@
 """The centre of mass and the inertia of a link: whether they can be those of its shapes."""
 
+import re
 from collections.abc import Iterator
 from math import dist, hypot, sqrt
 
@@ -20,6 +21,7 @@ _MARGIN, _MARGIN_SHARE = 0.005, 0.1  # metres, and of the size of the shapes
 _EQUAL, _OTHER = 0.05, 0.2  # of the largest moment of the cylinder
 _TOO_LARGE = 2.0  # of the distance of the farthest part of the shapes
 _OF_LINK = 20  # parts
+_TURNED_BY = re.compile(r"<origin\b[^<>]*?\brpy\s*=\s*[\"']\$\{\s*(\w+)\s*\}[\"']")
 
 
 def mass_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -137,13 +139,28 @@ def _other_axis(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
     if len(right) == 1:
         names = sorted((written, _NAMES[right[0]]))
         advice = f"exchange i{names[0] * 2} and i{names[1] * 2}, or {advice}"
-    message = (
-        f"the inertia of {quoted(link.name)} is that of its cylinder along {written}, but the "
-        f"cylinder lies otherwise: {advice}"
-    )
-    at = place(inertial.location, None, "inertia")
-    if at is not None:
-        yield warning(INERTIA_AXIS, message, at.resolve())
+    said = f"the inertia of {quoted(link.name)} is that of its cylinder along {written}, but the "
+    inertia = place(inertial.location, None, "inertia")
+    if inertia is None or link.location is None:
+        return
+    at, around = inertia.resolve(), link.location.resolve().calls
+    inside = at.calls[len(around) :]
+    if inside:  # the macro is for other links as well
+        macro, call = inside[0]
+        at = call._replace(calls=around)
+        advice = _advice_for_call(inertial, macro, is_direct=len(inside) == 1)
+    yield warning(INERTIA_AXIS, f"{said}cylinder lies otherwise: {advice}", at)
+
+
+def _advice_for_call(inertial: Inertial, macro: str, *, is_direct: bool) -> str:
+    """Return how to turn the inertia of one link, which a macro writes."""
+    origin, parameter = inertial.origin.location, None
+    if origin is not None and is_direct:
+        source, start = origin.source.element(origin.tag)
+        parameter = _TURNED_BY.match(source.text, start)
+    if parameter is None:
+        return f"give the link an <inertial> of its own, in place of {macro}"
+    return f"pass {parameter[1]} to {macro} here, which turns the <origin> of the <inertial>"
 
 
 def _about(number: int, along: float, across: float) -> Tensor:

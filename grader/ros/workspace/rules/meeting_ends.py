@@ -153,7 +153,8 @@ def _other_quality(asking: End, offering: End) -> Iterator[Mismatch]:
                 f"{offered} ({offering.location.file_and_line})"
             )
             is_certain = asking.surely_meets(offering)
-            yield Mismatch(TOPIC_QUALITY, message, asking.location, offering.location, is_certain)
+            wrong = Mismatch(TOPIC_QUALITY, message, asking.location, offering.location, is_certain)
+            yield wrong._replace(names=(asking.name,))
 
 
 def _other_type_of_bridge(graph: Graph) -> Iterator[Mismatch]:

@@ -118,7 +118,7 @@ class NameFixes:
         A program may be called as its package: `of_package` says which is meant.
         """
         start = source.offset(at.line, at.column)
-        end = self._end_of_element(source, at, start)
+        end = self.end_of_element(source, at, start)
         inside = [span for span in _spans(source, word) if start <= span[0] and span[1] <= end]
         if not inside or inside[0][0] <= start + 1:
             return None  # the place is that of the word, or of its quote
@@ -130,7 +130,7 @@ class NameFixes:
                 meant.append(span)
         return (meant or texts or inside)[0]
 
-    def _end_of_element(self, source: Source, at: Location, start: int) -> int:
+    def end_of_element(self, source: Source, at: Location, start: int) -> int:
         """Return where the call of Python or the start tag at a place ends; else the place."""
         if source.text.startswith("<", start):
             return source.text.find(">", start) + 1

@@ -25,7 +25,10 @@ def name_problems(workspace: Workspace) -> tuple[Problem, ...]:
     for wrong in _with_one_for_a_manifest(workspace, agreement.mismatches):
         problem = wrong.rule.problem(wrong.message, wrong.location, is_certain=wrong.is_certain)
         problem = problem._replace(
-            related=wrong.related, fixes=name_fixes.of(wrong), cause=wrong.cause
+            related=wrong.related,
+            fixes=name_fixes.of(wrong),
+            cause=wrong.cause,
+            names=(*wrong.names, wrong.word, wrong.lacked),
         )
         place = name_fixes.place_of_word(wrong)
         if place is not None:

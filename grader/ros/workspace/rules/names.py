@@ -98,6 +98,7 @@ class Mismatch(NamedTuple):
     cause: str = ""  # what it has in common with others that one mistake makes
     lacked: str = ""  # the package that package.xml lacks, and is to be added
     tag: str = "exec_depend"  # with which package.xml is to declare that package
+    names: tuple[str, ...] = ()  # by which a message of a log may mean it
 
     @property
     def family(self) -> AnyFamily:

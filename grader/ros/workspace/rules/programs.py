@@ -22,7 +22,7 @@ from grader.ros.package.entry_points import (
     read_module,
 )
 from grader.ros.package.package import CMAKE, SETUP, Package
-from grader.ros.package.program_names import meant_program, program_names
+from grader.ros.package.program_names import meant_program, program_names, program_of_module
 from grader.ros.python.parse import bound_in
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import (
@@ -72,7 +72,7 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             missing = _missing_program(node.package, node.executable, programs)
             either = corrections(node.executable, node.location, missing.meant)
             wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
-            yield wrong._replace(word=node.executable)
+            yield wrong._replace(word=node.executable, names=(node.package,))
     yield from _lifecycle(workspace)
 
 
@@ -90,7 +90,7 @@ def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Ite
         start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
         either = corrections(node.executable, node.location, missing.meant, start)
         wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
-        yield wrong._replace(word=node.executable)
+        yield wrong._replace(word=node.executable, names=(node.package,))
     else:
         yield from _not_executed(owner, node.executable, node.location)
 
@@ -217,7 +217,8 @@ def _why_no_program(package: Package, name: str) -> _MissingProgram:
     if name in paths:
         where = f"as {paths[name]}, but ros2 run looks in {home}"
         return _MissingProgram(f"a build installs {name!r} {where}")
-    return _missing_program(package.name, name, program_names(package))
+    meant = program_of_module(package, name)
+    return _missing_program(package.name, name, program_names(package), meant)
 
 
 def _is_built_only(setup: Installation | None, name: str) -> bool:
@@ -229,9 +230,11 @@ def _is_built_only(setup: Installation | None, name: str) -> bool:
     return False
 
 
-def _missing_program(package: str, name: str, programs: Sequence[str]) -> _MissingProgram:
+def _missing_program(
+    package: str, name: str, programs: Sequence[str], meant: str | None = None
+) -> _MissingProgram:
     """Return that a package has only programs of other names, and the one that may be meant."""
-    guess = meant_program(name, programs)
+    guess = meant or meant_program(name, programs)
     there = f"did you mean {guess!r}?" if guess else f"it has {', '.join(programs) or 'none'}"
     return _MissingProgram(f"the package {package!r} has no program {name!r}; {there}", guess)
 

@@ -9,7 +9,7 @@ from grader.ros.workspace.graph.bridge_rows import bridge_rows
 from grader.ros.workspace.graph.code_ends import END_SOURCES, opened_by
 from grader.ros.workspace.graph.graph import Graph, graph_of
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Counted, Definition, Fact, Open, Use
+from grader.ros.workspace.rules.names import Counted, Definition, Fact, Use
 
 _MAX_NAMED = 3  # programs
 
@@ -44,7 +44,10 @@ def _owners_of_rules(workspace: Workspace) -> Mapping[tuple[str, ...], list[Star
 def _remappings(
     workspace: Workspace, node: StartedNode, rules: Sequence[tuple[str, ...]]
 ) -> Iterator[Fact]:
-    """Yield the names that a node has, and those that these remappings, of it alone, replace."""
+    """Yield the names that a node has, and those that these remappings, of it alone, replace.
+
+    A node that may open others, as by a computed name, may have each of them.
+    """
     facts = workspace.code.own_node(node)
     if facts is None or node.remaps is None:
         return
@@ -58,9 +61,7 @@ def _remappings(
             yield Definition("topic", _bare(opened.name), opened.location, owner)
         else:
             is_open = True
-    if is_open:
-        yield Open("topic", owner)
-    for rule in rules:
+    for rule in () if is_open else rules:
         name = _bare(rule[0])
         if not name.startswith("__") and ":" not in name:
             # Actions and what rclpy itself opens, such as /tf, are not listed.
