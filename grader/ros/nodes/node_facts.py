@@ -157,10 +157,12 @@ class SynchronisedType(NamedTuple):
 CodeRule = Literal[
     "undefined name",
     "callback is called",
+    "callback parameters",
     "wrong call",
     "no goal state",
     "no result",
     "no response",
+    "used too early",
     "nothing spins",
     "no rclpy.init",
     "waits in a callback",

@@ -568,7 +568,14 @@ class _Module:
             for at, full in self._classes.items()
             if self.bases[full] and NODE_CLASSES.issuperset(self.bases[full])
         }
-        return ModuleText(self._name, self._code, self._parts, self._constants.imported, nodes)
+        return ModuleText(
+            self._name,
+            self._code,
+            self._parts,
+            self._constants.imported,
+            nodes,
+            self._class_nodes,
+        )
 
     def type_imports(self) -> Iterator[TypeImport]:
         """Yield the messages, services and actions that the module certainly imports."""

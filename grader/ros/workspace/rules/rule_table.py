@@ -499,6 +499,9 @@ NAME_BINDING = _code(
 CALLBACK_CALL = _code(
     "callback-call", sentence="A callback is given as a function, and not called."
 )
+CALLBACK_PARAMETERS = _code(
+    "callback-parameters", sentence="A callback takes the arguments that it is called with."
+)
 CALL_ARGUMENTS = _code(
     "call-arguments", sentence="A call of rclpy or tf2_ros has the arguments that it takes."
 )
@@ -506,6 +509,7 @@ SERVICE_RESPONSE = _code(
     "service-response",
     sentence="The callback of a service or action returns its response or result on every path.",
 )
+CONSTRUCTOR_ORDER = _code("constructor-order", sentence="A node is used after super().__init__().")
 GOAL_STATE = _slow_code(
     "goal-state", sentence="A function that executes a goal sets the state of the goal."
 )
