@@ -513,14 +513,14 @@ def test_a_node_with_several_callbacks_is_spun_more_than_once(
     assert messages.get(message) == is_certain
 
 
-LOOPS = [
+IDLE_LOOPS = [
     ("while rclpy.ok():\n        time.sleep(1)", True),
     ("while not door.publish():\n        time.sleep(1)", False),
     ("import threading\n    while True:\n        time.sleep(1)", False),
 ]
 
 
-@pytest.mark.parametrize(("loop", "is_certain"), LOOPS)
+@pytest.mark.parametrize(("loop", "is_certain"), IDLE_LOOPS)
 def test_a_loop_that_only_waits_does_nothing_for_a_node(loop: str, is_certain: bool) -> None:
     """Its condition, or another thread, may do something."""
     edits = (
