@@ -204,6 +204,7 @@ class NodeFacts(NamedTuple):
     doubts: tuple[Doubt, ...]
     frames: tuple[NodeFrame, ...] = ()
     transforms: tuple[NodeTransform, ...] = ()  # of a broadcaster
+    named_at: Location | None = None  # where it gets its name; None where that is not known
 
 
 class NodeProgram(NamedTuple):

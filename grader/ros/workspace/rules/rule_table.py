@@ -521,6 +521,9 @@ RCLPY_INIT = _code("rclpy-init", sentence="A node is made after rclpy.init().")
 CALLBACK_WAIT = _code("callback-wait", sentence="A callback waits for no other callback.")
 CALLBACK_SLEEP = _slow_code("callback-sleep", sentence="A callback does not sleep.")
 ENTITY_KEPT = _code("entity-kept", sentence="A node keeps what it makes.")
+NAME_VALID = _code(
+    "name-valid", sentence="ROS 2 accepts the names of nodes, topics, services and actions in code."
+)
 PUBLISHER_ACTIVATED = _code(
     "publisher-activated", sentence="A node with a lifecycle activates its publishers."
 )
