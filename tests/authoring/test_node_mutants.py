@@ -31,6 +31,12 @@ def test_interfaces_and_code_have_mutants() -> None:
         "spin removed": 3,
         "callback called": 5,
         "response not returned": 1,
+        "response replaced": 1,
+        "callback parameter added": 3,
+        "callback parameter removed": 3,
+        "constructor after its use": 2,
+        "message of a class": 2,
+        "spin of a class": 2,
         "init removed": 3,
         "constructor removed": 3,
         "declaration removed": 5,
@@ -39,6 +45,44 @@ def test_interfaces_and_code_have_mutants() -> None:
         "interface not generated": 3,
         "field type changed": 9,
     }
+
+
+PYTHON = """import rclpy
+class Lamp(Node):
+    def __init__(self):
+        super().__init__('lamp')
+        self.lights = self.create_publisher(Bool, 'light', 10)
+        self.create_timer(1.0, self.tick)
+        self.create_timer(1.0, unknown)
+        self.create_subscription(Bool, 'on', self.switch, 5)
+    def tick(self):
+        light = Bool()
+        self.lights.publish(light)
+        self.lights.publish(self.made())
+    def switch(self, message, count=0):
+        pass
+def main():
+    node = Lamp()
+    rclpy.spin(node)
+"""
+
+
+def test_nodes_in_python_have_mutants() -> None:
+    """Each is what rclpy refuses for certain."""
+    source = Source("lamp.py", PYTHON)
+    changes = node_changes(cart(laundry_files()), source, "lamp.py", CODE)
+    found = {(it.family, PYTHON[it.start : it.end], it.new) for it in changes}
+    order = "self.lights = self.create_publisher(Bool, 'light', 10)"
+    init = "super().__init__('lamp')"
+    assert found >= {
+        ("callback parameter added", "", ", event"),
+        ("message of a class", "light", "Bool"),
+        ("spin of a class", "node", "Lamp"),
+        ("quality of service as text", "10", "'10'"),
+        ("quality of service as text", "5", "'5'"),
+        ("constructor after its use", f"{init}\n        {order}", f"{order}\n        {init}"),
+    }
+    assert not any(family == "callback parameter removed" for family, _, _ in found)
 
 
 def test_a_family_that_is_not_compared_has_no_mutants() -> None:

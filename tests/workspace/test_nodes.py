@@ -397,6 +397,11 @@ FOUND = [
     ),
     ("code", (DOOR, "    rclpy.spin(Door())", "    Door()"), "nothing spins the node"),
     ("code", (DOOR, "    rclpy.spin(Door())", "    find(Door())"), "nothing spins the node"),
+    (
+        "code",
+        (DOOR, "    rclpy.spin(Door())", "    Door()\n    while True:\n        pass"),
+        "nothing spins the node",
+    ),
     ("code", (DOOR, "    rclpy.init()\n", ""), "rclpy.init() is missing, so rclpy makes no node"),
     (
         "code",
@@ -472,6 +477,72 @@ MAYBE = [
         "nothing spins the node",
     ),
 ]
+
+
+TIMER = '        self.create_service(LockDoor, "~/lock", self.on_lock)\n'
+SPUN_ONCE = [
+    ("self.create_timer(1.0, self.publish)", "rclpy.spin_once(Door())", True),
+    (
+        "if self.is_locked:\n            self.create_timer(1.0, self.publish)",
+        "rclpy.spin_once(Door())",
+        False,
+    ),
+    ("self.other = None", "rclpy.spin_once(Door())", False),
+    (
+        "self.create_timer(1.0, self.publish)",
+        "for _ in range(9):\n        rclpy.spin_once(Door())",
+        None,
+    ),
+]
+
+
+@pytest.mark.parametrize(("more", "spin", "is_certain"), SPUN_ONCE)
+def test_a_node_with_several_callbacks_is_spun_more_than_once(
+    more: str, spin: str, is_certain: bool | None
+) -> None:
+    """One with a single callback may wait for one message."""
+    edits = (
+        (DOOR, TIMER, f"{TIMER}        {more}\n"),
+        (DOOR, "    rclpy.spin(Door())", f"    {spin}"),
+    )
+    messages = {it.message: it.is_certain for it in wrong(*edits)}
+    message = (
+        "spin_once() runs one callback at most, and nothing else spins the node; "
+        "write rclpy.spin(node)"
+    )
+    assert messages.get(message) == is_certain
+
+
+IDLE_LOOPS = [
+    ("while rclpy.ok():\n        time.sleep(1)", True),
+    ("while not door.publish():\n        time.sleep(1)", False),
+    ("import threading\n    while True:\n        time.sleep(1)", False),
+]
+
+
+@pytest.mark.parametrize(("loop", "is_certain"), IDLE_LOOPS)
+def test_a_loop_that_only_waits_does_nothing_for_a_node(loop: str, is_certain: bool) -> None:
+    """Its condition, or another thread, may do something."""
+    edits = (
+        (DOOR, "    rclpy.spin(Door())", f"    door = Door()\n    {loop}"),
+        (DOOR, "import rclpy\n", "import time\n\nimport rclpy\n"),
+    )
+    [mismatch] = [it for it in wrong(*edits) if it.message.startswith("nothing spins")]
+    assert mismatch.is_certain == is_certain
+
+
+def test_a_loop_in_a_callback_that_nothing_calls_is_not_reached() -> None:
+    """So that it does nothing, either."""
+    edits = (
+        (DOOR, "    rclpy.spin(Door())", "    Door()"),
+        (
+            DOOR,
+            "        self.is_locked = request.lock",
+            "        while self.x:\n            self.x -= 1",
+        ),
+    )
+    [mismatch] = [it for it in wrong(*edits) if it.message.startswith("nothing spins")]
+    assert mismatch.is_certain
 
 
 @pytest.mark.parametrize(("old", "new", "message"), MAYBE)

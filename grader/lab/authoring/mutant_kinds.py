@@ -18,6 +18,7 @@ _KINDS = {
         "spin",
         "callback",
         "response",
+        "message",
         "init",
         "constructor",
         "declaration",

@@ -3,11 +3,13 @@
 import ast
 import re
 from collections.abc import Collection, Iterator
+from itertools import pairwise
 
 from grader.base.source import Location, Source
 from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import CMAKE
+from grader.ros.python.constants import last_name
 from grader.ros.python.python_file import PythonFile
 from grader.ros.workspace.rules.rule_table import Family
 
@@ -30,6 +32,8 @@ _GENERATED = re.compile(r"\"?\b((?:msg|srv|action)/\w+\.(?:msg|srv|action))\b\"?
 _STATEMENTS = {"init": "init", "__init__": "constructor", "declare_parameter": "declaration"}
 _BEST_EFFORT = "qos_profile_sensor_data"  # where a file imports it
 _CALLBACKS = {"create_timer": 1, "create_subscription": 2, "create_service": 2, "ActionServer": 3}
+# A statement of a node that needs what super().__init__() makes.
+_NEEDS_NODE = re.compile(r"(?:self\.\w+ = )?self\.(?:create_|declare_|get_parameter)")
 _ANSWERING = ("create_service", "ActionServer")
 
 
@@ -140,6 +144,9 @@ def _code_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
                         answering.add(callback.attr)
     yield from _call_changes(file, label)
     yield from _return_changes(file, label, answering)
+    yield from _parameter_changes(file, label)
+    yield from _instance_changes(file, label)
+    yield from _order_changes(file, label)
 
 
 def _return_changes(
@@ -152,6 +159,66 @@ def _return_changes(
             if isinstance(last, ast.Return):
                 place = f"{label} {node.name}"
                 yield MutantEdit("response not returned", place, *file.span(last), "pass")
+                yield MutantEdit("response replaced", place, *file.span(last), "return True")
+
+
+def _parameter_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+    """Yield that a callback lacks its last parameter, or has one more.
+
+    A callback of a subscription may have one more.
+    """
+    functions = {node.name: node for node in file.nodes if isinstance(node, ast.FunctionDef)}
+    for node in file.nodes:
+        if not isinstance(node, ast.Call) or last_name(node.func) not in _CALLBACKS:
+            continue
+        called = last_name(node.func)
+        for given in node.args[_CALLBACKS[called] :][:1]:
+            function = functions.get(last_name(given))
+            if function is None or function.decorator_list:
+                continue
+            given_self = isinstance(given, ast.Attribute)
+            names = function.args.args
+            if not names or function.args.defaults or function.args.vararg:
+                continue
+            place, (_, end) = f"{label} {function.name}", file.span(names[-1])
+            if called != "create_subscription":
+                yield MutantEdit("callback parameter added", place, end, end, ", event")
+            if len(names) > given_self and len(names) > 1:
+                start = file.span(names[-2])[1]
+                yield MutantEdit("callback parameter removed", place, start, end, "")
+
+
+def _instance_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+    """Yield that a message or a node is replaced by its class."""
+    made: dict[str, str] = {}  # the classes of variables
+    for node in file.nodes:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=ast.Name(id=kind))):
+                made[name] = kind
+    for node in file.nodes:
+        match node:
+            case ast.Call(func=ast.Attribute(attr="publish" | "spin" as method), args=[given]):
+                called = given.func if isinstance(given, ast.Call) else given
+                name = called.id if isinstance(called, ast.Name) else ""
+                kind = name if isinstance(given, ast.Call) else made.get(name, "")
+                if kind[:1].isupper():
+                    family = "message" if method == "publish" else "spin"
+                    place = f"{label} {file.segment(node)[:MAX_LABEL]}"
+                    yield MutantEdit(f"{family} of a class", place, *file.span(given), kind)
+
+
+def _order_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+    """Yield that a node declares or opens something before its base class is initialised."""
+    for node in file.nodes:
+        if not isinstance(node, ast.FunctionDef) or node.name != "__init__":
+            continue
+        for first, second in pairwise(node.body):
+            texts = file.segment(first), file.segment(second)
+            if "super().__init__(" in texts[0] and _NEEDS_NODE.match(texts[1]):
+                (start, between), (behind, end) = file.span(first), file.span(second)
+                swapped = f"{texts[1]}{file.text[between:behind]}{texts[0]}"
+                place = f"{label} {texts[1][:MAX_LABEL]}"
+                yield MutantEdit("constructor after its use", place, start, end, swapped)
 
 
 def _call_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
@@ -180,12 +247,15 @@ def _removed(file: PythonFile, label: str, family: str, node: ast.Expr) -> Mutan
 def _requalified(
     file: PythonFile, label: str, call: ast.Call, quality: ast.expr, name: str
 ) -> Iterator[MutantEdit]:
-    """Yield that a publisher is best effort, or a subscription to one is reliable."""
+    """Yield that a publisher is best effort, a subscription to one reliable, or a depth a text."""
     is_depth, new = isinstance(quality, ast.Constant), ""
     if name == "create_publisher" and is_depth and _BEST_EFFORT in file.text:
         new = _BEST_EFFORT
     elif name == "create_subscription" and not is_depth:
         new = "10"
+    place = f"{label} {file.segment(call)[:MAX_LABEL]}"
+    if is_depth and name in ("create_publisher", "create_subscription"):
+        text = f"'{file.segment(quality)}'"
+        yield MutantEdit("quality of service as text", place, *file.span(quality), text)
     if new:
-        place = f"{label} {file.segment(call)[:MAX_LABEL]}"
         yield MutantEdit("quality of service changed", place, *file.span(quality), new)

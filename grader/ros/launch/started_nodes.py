@@ -37,6 +37,7 @@ from grader.ros.launch.node_parameters import (
     remap_rules,
 )
 from grader.ros.launch.substitutions import PART_UNKNOWN, check_program, known_text, listed, resolve
+from grader.ros.launch.valid_names import is_node_name
 from grader.ros.python.parse import Position
 from grader.ros.python.values import (
     Call,
@@ -83,7 +84,6 @@ _PREFIXES = frozenset(
         "python3",
     }
 )
-_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _NAMESPACE = re.compile(r"|/|/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 
 
@@ -302,7 +302,7 @@ def evaluate_node(call: Call, context: Context) -> None:
     """
     evaluate_process(call, context)
     name, namespace = call.kwargs.get("name"), call.kwargs.get("namespace")
-    if name is not None and _NAME.fullmatch(text := known_text(name, context, call.at)) is None:
+    if name is not None and not is_node_name(text := known_text(name, context, call.at)):
         raise EvaluationFails(
             f"the name of the node, {text!r}, is not valid: use letters, digits and _", call.at
         )

@@ -157,10 +157,12 @@ class SynchronisedType(NamedTuple):
 CodeRule = Literal[
     "undefined name",
     "callback is called",
+    "callback parameters",
     "wrong call",
     "no goal state",
     "no result",
     "no response",
+    "used too early",
     "nothing spins",
     "no rclpy.init",
     "waits in a callback",
@@ -202,6 +204,7 @@ class NodeFacts(NamedTuple):
     doubts: tuple[Doubt, ...]
     frames: tuple[NodeFrame, ...] = ()
     transforms: tuple[NodeTransform, ...] = ()  # of a broadcaster
+    named_at: Location | None = None  # where it gets its name; None where that is not known
 
 
 class NodeProgram(NamedTuple):

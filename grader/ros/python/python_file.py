@@ -84,7 +84,7 @@ class PythonFile:
         text = self.text[start : start + byte].encode("utf-8", "surrogateescape")[:byte]
         return start + len(text.decode("utf-8", "surrogateescape"))
 
-    def span(self, node: ast.expr | ast.stmt | ast.keyword) -> tuple[int, int]:
+    def span(self, node: ast.expr | ast.stmt | ast.keyword | ast.arg) -> tuple[int, int]:
         """Return the offsets of the start and the end of a node."""
         assert node.end_lineno is not None
         assert node.end_col_offset is not None

@@ -2,8 +2,7 @@
 
 import ast
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from grader.ros.known.releases import Release
 from grader.ros.nodes.python.python_calls import ArgumentKind, Written, WrongCall, wrong_call
@@ -21,6 +20,7 @@ _MAKING = {
         for name in ("ActionClient", "Buffer", "TransformBroadcaster", "StaticTransformBroadcaster")
     },
 }
+_SECTIONS = ("Request", "Response", "Goal", "Result", "Feedback")
 
 
 class CalledFunctions:
@@ -40,22 +40,32 @@ class CalledFunctions:
             for node in nodes
             if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
         )
+        parameters = {node.arg for node in nodes if isinstance(node, ast.arg)}
+        self._rebound = parameters.union(self._stored)
         made: dict[str, list[str]] = {}
         for target, kind in made_in(node for node in nodes if isinstance(node, ast.stmt)):
             made.setdefault(target, []).append(kind)
         self._made = made
 
     def wrong_call(
-        self, call: ast.Call, owner: ast.ClassDef | None, filled: Mapping[str, str]
+        self,
+        call: ast.Call,
+        owner: ast.ClassDef | None,
+        filled: Mapping[str, str],
+        is_node_class: Callable[[ast.expr], bool] = lambda _: False,
     ) -> WrongCall | None:
         """Return what is wrong with the arguments of a call in a method of a node's class.
 
-        `filled` is what is given to parameters where it is missing.
+        `filled` is what is given to parameters where it is missing, `is_node_class` says whether an
+        expression surely is a class of nodes.
         """
         called = self._called_function(call, owner)
         if called is None:
             return None
-        kind_of = partial(self._kind_of, owner)
+
+        def kind_of(argument: ast.expr) -> ArgumentKind | None:
+            return "node class" if is_node_class(argument) else self._kind_of(owner, argument)
+
         written = Written(call, self._code.source, self._span, kind_of, filled)
         return wrong_call(written, called, self._releases)
 
@@ -100,8 +110,17 @@ class CalledFunctions:
         method = methods.get(name.removeprefix("self.")) if name.startswith("self.") else None
         if method is not None and not method.decorator_list:
             return "function"
-        module = self._full_name(argument).rpartition(".")[0]
-        return "type" if name and module.endswith((".msg", ".srv", ".action")) else None
+        return "type" if self._is_interface(argument) else None
+
+    def _is_interface(self, argument: ast.expr) -> bool:
+        """Return whether an expression is a type of messages, or a section of another type."""
+        first, _, section = dotted(argument).partition(".")
+        parts = self._full_name(argument).split(".")
+        if first not in self._imports or first in self._rebound or parts[0] == "rclpy":
+            return False
+        if parts[-1] in _SECTIONS and parts[-1] in section:
+            parts.pop()
+        return len(parts) > 2 and parts[-2] in ("msg", "srv", "action") and parts[-1][0].isupper()
 
     def _span(self, node: ast.AST) -> tuple[int, int]:
         assert isinstance(node, ast.expr | ast.keyword)

@@ -6,13 +6,15 @@ create_subscription(), create_service() or ActionServer.
 """
 
 import ast
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 from grader.base.names import closest, near
 from grader.base.problems import NO_FIXES, Fix, Fixes
 from grader.base.source import Location
-from grader.base.text import enumerated
+from grader.base.text import cut, enumerated
 from grader.ros.known.package_tables import python_table
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
@@ -24,16 +26,21 @@ from grader.ros.nodes.python.action_faults import (
     goals_without_state,
     loops_without_transforms,
 )
+from grader.ros.nodes.python.branches import calls_in_branches
+from grader.ros.nodes.python.callback_parameters import CallbackClass, wrong_callbacks
 from grader.ros.nodes.python.called_functions import CalledFunctions, imported_names
 from grader.ros.nodes.python.log_calls import wrong_log_calls
-from grader.ros.nodes.python.rclpy_names import CALLBACKS, is_passive
-from grader.ros.python.constants import binds_unseen, dotted, last_name
+from grader.ros.nodes.python.node_constructors import early_uses
+from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
+from grader.ros.python.constants import binds_unseen, constant_in, dotted, last_name
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
+from grader.ros.python.values import QualifiedName
 from grader.ros.python.walking import children, walk
 
 # With one of these, callbacks may run while another one waits.
 _OTHER_THREADS = ("xecutor", "hread", "spin_once", "spin_some", "asyncio", "await ")
 _MAX_FAULTS = 20  # of one module and rule
+_MAX_SHOWN = 40  # characters of an expression
 _ANSWERING = ("create_service", "ActionServer")
 # Messages of pyflakes about what certainly fails when it runs.
 _CERTAIN = frozenset(
@@ -53,6 +60,12 @@ _SPINNING = "rclpy.spin_until_future_complete"
 # Names of groups and executors with which a callback may wait for another one.
 _CONCURRENT = ("MultiThreadedExecutor", "ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup")
 _CONCURRENT_MODULES = frozenset({"threading", "multiprocessing", "concurrent", "asyncio"})
+# Modules whose functions may run beside a loop.
+_BESIDE = _CONCURRENT_MODULES | {"_thread", "signal", "sched", "socketserver", "http", "tkinter"}
+_LOOPS = (
+    *(ast.While, ast.For, ast.AsyncFor),
+    *(ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp),
+)
 _ENDING = frozenset({"sys.exit", "exit", "quit", "os._exit"})
 
 
@@ -71,6 +84,7 @@ class ModuleText(NamedTuple):
     parts: Sequence[CodePart]
     imports: Collection[str]
     nodes: Mapping[Location, ast.ClassDef]  # the classes whose only bases are those of rclpy
+    classes: Mapping[Location, ast.ClassDef]  # all of them
 
 
 class _PackageAttributes(NamedTuple):
@@ -122,24 +136,41 @@ def code_faults(
     yield from _undefined_names(module.code)
     yield from search.undefined_attributes(attributes)
     yield from search.called_callbacks()
+    yield from search.wrong_parameters(attributes)
     yield from search.without_response()
     yield from search.waiting_callbacks()
     yield from search.of_programs()
-    yield from _wrong_calls(module, releases or RELEASES)
+    yield from _early_uses(module, attributes)
+    yield from _wrong_calls(module, others, releases or RELEASES)
     yield from wrong_log_calls(module.code, module.parts)
     yield from search.of_actions()
 
 
-def _wrong_calls(module: ModuleText, releases: Sequence[Release]) -> Iterator[CodeFault]:
+def _early_uses(module: ModuleText, attributes: _PackageAttributes) -> Iterator[CodeFault]:
+    """Yield what constructors of nodes use before the node is made."""
+    for owner in module.nodes.values() if not attributes.may_be_more else ():
+        if len(owner.bases) == 1 and not owner.keywords:
+            yield from early_uses(module.code, owner, attributes.stored)
+
+
+def _wrong_calls(
+    module: ModuleText, others: Mapping[str, ModuleText], releases: Sequence[Release]
+) -> Iterator[CodeFault]:
     """Yield the calls of rclpy and tf2_ros whose arguments Python cannot bind."""
     nodes = every_node(module.code.tree)
     if binds_unseen(nodes):
         return
     functions = CalledFunctions(module.code, nodes, imported_names(nodes), releases)
+    classes = {*NODE_CLASSES}
+    for other in others.values():
+        classes.update(f"{other.name}.{node.name}" for node in other.nodes.values())
     count = 0
     for part in module.parts:
         owner = module.nodes.get(part.of) if part.of is not None else None
-        wrong_calls = {call: functions.wrong_call(call, owner, {}) for call in part.calls}
+        is_node_class = partial(_is_one_of, classes, part)
+        wrong_calls = {
+            call: functions.wrong_call(call, owner, {}, is_node_class) for call in part.calls
+        }
         reactions = {call: wrong.reaction for call, wrong in wrong_calls.items() if wrong}
         certain = set(certain_nodes(part.node)) if reactions else set[ast.AST]()
         said = [call for call in reactions if call in certain]
@@ -148,6 +179,13 @@ def _wrong_calls(module: ModuleText, releases: Sequence[Release]) -> Iterator[Co
             if count <= _MAX_FAULTS:
                 at = location_in(module.code.source, position_of(call))
                 yield CodeFault("wrong call", reactions[call], at)
+
+
+def _is_one_of(classes: Collection[str], part: CodePart, node: ast.expr) -> bool:
+    """Return whether an expression in a part of a module surely is one of some classes."""
+    first, dot, rest = dotted(node).partition(".")
+    value = constant_in(part.scope, first)
+    return isinstance(value, QualifiedName) and f"{value.name}{dot}{rest}" in classes
 
 
 def _undefined_names(code: Code) -> Iterator[CodeFault]:
@@ -313,6 +351,16 @@ class _Search:
                 fixes = self._rewrite(start, self._end(registered.given), name)
             yield CodeFault("callback is called", message, at, fixes=fixes)
 
+    def wrong_parameters(self, attributes: _PackageAttributes) -> Iterator[CodeFault]:
+        """Yield callbacks that cannot take what they are called with."""
+        if attributes.may_be_more:
+            return
+        classes: dict[Location | None, CallbackClass] = {}
+        for at, node in self._module.classes.items():
+            classes[at] = CallbackClass(node, attributes.stored)
+        defined = {part.name for other in self._others.values() for part in other.parts}
+        yield from wrong_callbacks(self._code, self._module.parts, classes, defined)
+
     def without_response(self) -> Iterator[CodeFault]:
         """Yield callbacks of services and actions that return nothing."""
         said = set[ast.AST]()
@@ -324,6 +372,8 @@ class _Search:
             if function.decorator_list or _is_generator(function):
                 continue
             what = "response" if registered.by == "create_service" else "result"
+            if what == "response":
+                yield from self._wrong_responses(function, registered)
             for node, is_certain in _ends_without_value(function):
                 message = f"{function.name}() ends without returning its {what} here"
                 if node is function:
@@ -332,6 +382,22 @@ class _Search:
                         message = f"{message} on every path"
                 at = self._at(node)
                 yield CodeFault("no response", message, at, self._at(registered.call), is_certain)
+
+    def _wrong_responses(
+        self, function: ast.FunctionDef | ast.AsyncFunctionDef, registered: _Registered
+    ) -> Iterator[CodeFault]:
+        """Yield where the callback of a service certainly returns something else."""
+        for statement in _own_statements(function.body):
+            if not isinstance(statement, ast.Return) or statement.value is None:
+                continue
+            written = _no_response(statement.value, function)
+            if written:
+                message = (
+                    f"{function.name}() returns {written} in place of its response, which rclpy "
+                    "refuses with a TypeError"
+                )
+                at, related = self._at(statement), self._at(registered.call)
+                yield CodeFault("no response", message, at, related)
 
     def waiting_callbacks(self) -> Iterator[CodeFault]:
         """Yield what callbacks wait for while nothing else can run.
@@ -513,7 +579,7 @@ class _Search:
         reached = self._reached_modules()
         if reached is None:
             return
-        names, loops = _names_and_loops(reached)
+        names = _count_names(reached)
         calls = [call for part in self._module.parts if part.of is None for call in part.calls]
         by_name = {dotted(call.func): call for call in reversed(calls)}
         init, spin = by_name.get("rclpy.init"), by_name.get("rclpy.spin")
@@ -521,10 +587,71 @@ class _Search:
             message = (
                 "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
             )
-            yield CodeFault("nothing spins", message, self._at(init), is_certain=not loops)
+            is_certain = not self._may_work_in_loops(reached)
+            yield CodeFault("nothing spins", message, self._at(init), is_certain=is_certain)
+        if init is not None and self._registered:
+            yield from self._spun_once(reached)
         if spin is not None and not self._is_initialised(names):
             message = "rclpy.init() is missing, so rclpy makes no node"
             yield CodeFault("no rclpy.init", message, self._at(spin))
+
+    def _may_work_in_loops(self, modules: Sequence[ModuleText]) -> bool:
+        """Return whether a loop of a program may do something, in place of its callbacks.
+
+        A loop in a callback is not reached, and one that only waits does nothing, unless something
+        else runs beside it.
+        """
+        unreached = self._nodes_in_callbacks()
+        has_others = any(
+            not _BESIDE.isdisjoint(imported.partition(".")[0] for imported in module.imports)
+            for module in modules
+        )
+        for module in modules:
+            for node in every_node(module.code.tree):
+                if not isinstance(node, ast.While) or node in unreached:
+                    continue
+                if has_others or not _only_waits(node.body) or not _is_plain_test(node.test):
+                    return True
+        return False
+
+    def _nodes_in_callbacks(self) -> set[ast.AST]:
+        """Return what is in functions that the code only gives as callbacks."""
+        named = _count_names(self._others.values())
+        inside = set[ast.AST]()
+        for registered in self._registered:
+            function = self._function(registered.given, registered.part)
+            if function is not None and named[function.name] == 1:
+                inside.update(walk(function))
+        return inside
+
+    def _spun_once(self, reached: Sequence[ModuleText]) -> Iterator[CodeFault]:
+        """Yield that a program runs one callback of a node at most.
+
+        It is certain for a node that surely has several: one may wait for one message.
+        """
+        names, named = _count_names(reached), _count_names([self._module])
+        spinning = [name for name in names if _may_spin([name])]
+        if spinning != ["spin_once"] or names["spin_once"] != 1 or self._is_imported():
+            return
+        for part in self._module.parts:
+            if part.of is not None or named[part.name] > 1:
+                continue
+            repeated = {"spin_once", part.name} & _names_in_loops([self._module])
+            for call in part.calls if not repeated else ():
+                if last_name(call.func) == "spin_once":
+                    message = (
+                        "spin_once() runs one callback at most, and nothing else spins the node; "
+                        "write rclpy.spin(node)"
+                    )
+                    is_certain = self._has_several_callbacks()
+                    yield CodeFault("nothing spins", message, self._at(call), None, is_certain)
+
+    def _has_several_callbacks(self) -> bool:
+        """Return whether the only node of the module surely has more than one callback."""
+        conditional = calls_in_branches(self._code.tree)
+        sure = [each for each in self._registered if each.call not in conditional]
+        owners = {registered.part.of for registered in self._registered}
+        return len(sure) > 1 and len(owners) == 1
 
     def _is_initialised(self, names: Collection[str]) -> bool:
         """Return whether the module, or one that imports it, may initialise rclpy."""
@@ -637,6 +764,31 @@ def _lacks_arguments(
     return len(call.args) + len(call.keywords) < needed - is_method
 
 
+def _no_response(value: ast.expr, function: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
+    """Return the text of a value that certainly is no response of a service; empty for others.
+
+    It is a literal or a comparison, the request, or a field of the response.
+    """
+    names = [parameter.arg for parameter in function.args.args if parameter.arg != "self"]
+    bound = Counter[str]()
+    for node in walk(function):
+        if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
+            bound[node.id] += 1
+    is_plain = len(names) == 2 and not any(bound[name] for name in names)
+    match value:
+        case ast.Constant(value=None):
+            return ""
+        case ast.Constant() | ast.JoinedStr() | ast.List() | ast.Tuple() | ast.Dict() | ast.Set():
+            return cut(ast.unparse(value), _MAX_SHOWN)
+        case ast.Compare() | ast.UnaryOp(op=ast.Not()):
+            return cut(ast.unparse(value), _MAX_SHOWN)
+        case ast.Name(id=name) if is_plain and name == names[0]:
+            return f"{name}, the request,"
+        case ast.Attribute(value=ast.Name(id=name)) if is_plain and name == names[1]:
+            return dotted(value)
+    return ""
+
+
 def _is_generator(function: ast.AST) -> bool:
     return any(isinstance(node, ast.Yield | ast.YieldFrom) for node in walk(function))
 
@@ -718,14 +870,30 @@ def _either(one: str, other: str) -> str:
     return "no"
 
 
-def _names_and_loops(modules: Iterable[ModuleText]) -> tuple[set[str], int]:
-    """Return the names and attributes in modules, and how many while loops these have."""
-    names, loops = set[str](), 0
+def _count_names(modules: Iterable[ModuleText]) -> Counter[str]:
+    """Return how often names and attributes are written in modules."""
+    names = Counter[str]()
     for module in modules:
-        for node in walk(module.code.tree):
-            names.add(getattr(node, "attr", "") or getattr(node, "id", ""))
-            loops += isinstance(node, ast.While)
-    return names, loops
+        for node in every_node(module.code.tree):
+            names[getattr(node, "attr", "") or getattr(node, "id", "")] += 1
+    return names
+
+
+def _names_in_loops(modules: Iterable[ModuleText]) -> set[str]:
+    """Return the names and attributes that are written in loops and comprehensions of modules."""
+    names = set[str]()
+    for module in modules:
+        for loop in every_node(module.code.tree):
+            if isinstance(loop, _LOOPS):
+                for node in walk(loop):
+                    names.add(getattr(node, "attr", "") or getattr(node, "id", ""))
+    return names
+
+
+def _is_plain_test(test: ast.expr) -> bool:
+    """Return whether the condition of a loop does nothing: it calls at most rclpy.ok()."""
+    calls = [node for node in walk(test) if isinstance(node, ast.Call)]
+    return all(dotted(call.func) == "rclpy.ok" for call in calls)
 
 
 def _may_spin(names: Collection[str]) -> bool:

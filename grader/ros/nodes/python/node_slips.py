@@ -353,7 +353,7 @@ class _NodeSlips:
         for statement in statements:
             for call in _calls(statement):
                 wrong = self._calls.wrong_call(call, function.owner, filled)
-                if wrong is not None:
+                if wrong is not None and wrong.edits:
                     at = location_in(self._code.source, position_of(call))
                     yield Slip(wrong.edits, wrong.reaction, wrong.assumption, at, is_refused=True)
 

@@ -1,4 +1,4 @@
-"""Calls of rclpy and tf2_ros whose arguments Python cannot bind, or that are exchanged.
+"""Calls of rclpy and tf2_ros whose arguments Python cannot bind, or that are exchanged or refused.
 
 Signatures by release are rows of `known/packages/rclpy.toml` and `tf2_ros.toml`. Of a release that
 was not read, only missing and exchanged arguments are wrong: it may have more parameters.
@@ -12,12 +12,12 @@ from typing import Literal, NamedTuple
 
 from grader.base.names import near
 from grader.base.source import Edit, Edits, Source
-from grader.base.text import counted
+from grader.base.text import counted, cut
 from grader.ros.known.package_tables import call_signatures
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.python.constants import dotted
 
-ArgumentKind = Literal["text", "number", "function", "type"]
+ArgumentKind = Literal["text", "number", "function", "type", "node class"]
 # What is given to parameters of these names, where an argument surely is of a kind. A depth may
 # stand for a profile of quality of service.
 _KINDS: Mapping[str, ArgumentKind] = {
@@ -36,13 +36,46 @@ _KINDS: Mapping[str, ArgumentKind] = {
     "action_type": "type",
 }
 _NEVER: Mapping[str, tuple[ArgumentKind, ...]] = {"qos_profile": ("text", "function", "type")}
+# What certainly raises an error where it is given, and what is expected instead: rclpy/node.py,
+# publisher.py, client.py, type_support.py and action/client.py of ros2/rclpy, Humble to Rolling.
+_NO_MESSAGE: tuple[ArgumentKind, ...] = ("text", "number", "function", "type", "node class")
+_NO_NAME: tuple[ArgumentKind, ...] = ("number", "function", "type", "node class")
+_NO_TYPE: tuple[ArgumentKind, ...] = ("text", "number", "function")
+_REFUSED: Mapping[str, tuple[tuple[ArgumentKind, ...], str]] = {
+    "msg": (_NO_MESSAGE, "a message"),
+    "request": (_NO_MESSAGE, "a request"),
+    "goal": (_NO_MESSAGE, "a goal"),
+    "node": (("text", "type", "function", "node class"), "a node"),
+    "qos_profile": (("text", "function", "type"), "a number or a QoSProfile"),
+    "topic": (_NO_NAME, "a name"),
+    "srv_name": (_NO_NAME, "a name"),
+    "action_name": (_NO_NAME, "a name"),
+    "node_name": (_NO_NAME, "a name"),
+    "msg_type": (_NO_TYPE, "a type of messages"),
+    "srv_type": (_NO_TYPE, "a type of services"),
+    "action_type": (_NO_TYPE, "a type of actions"),
+    "callback": (("text", "number"), "a function"),
+    "execute_callback": (("text", "number"), "a function"),
+}
+_KIND_WORDS: Mapping[ArgumentKind, str] = {
+    "text": "a text",
+    "number": "a number",
+    "function": "a function",
+    "type": "a class",
+    "node class": "a class",
+}
+_INSTANCES = ("msg", "request", "goal", "node")  # what an instance of a class is given to
+_MAX_SHOWN = 40  # characters of an argument
 _FILLED = {"qos_profile": "10"}  # what is assumed where an argument is missing
 _ANYTHING = "..."
 _READ: tuple[Release, ...] = ("humble", "iron", "jazzy")  # those that were read, and between them
 
 
 class WrongCall(NamedTuple):
-    """What is wrong with the arguments of a call, and the edits that write what is assumed."""
+    """What is wrong with the arguments of a call, and the edits that write what is assumed.
+
+    Without edits, nothing is assumed.
+    """
 
     reaction: str
     assumption: str
@@ -163,6 +196,7 @@ def _unbound(written: Written, shown: str, signature: _Signature) -> WrongCall |
         or _too_many(written, shown, signature)
         or _exchanged(written, shown, signature)
         or _missing(written, shown, signature)
+        or _refused(written, shown, signature)
     )
 
 
@@ -249,6 +283,22 @@ def _missing(written: Written, shown: str, signature: _Signature) -> WrongCall |
     assumption = f"`{value}` is added" if value != _ANYTHING else "it is assumed"
     edit = written.added(place, ", ".join(added))
     return WrongCall(f"{shown} lacks its argument {name}", assumption, (edit,))
+
+
+def _refused(written: Written, shown: str, signature: _Signature) -> WrongCall | None:
+    """Return the first argument that surely is of a kind that its parameter never takes."""
+    given = [*zip(signature.positional, written.call.args, strict=False)]
+    given += [(keyword.arg or "", keyword.value) for keyword in written.call.keywords]
+    for name, argument in given:
+        kinds, expected = _REFUSED.get(name, ((), ""))
+        kind = written.kind_of(argument)
+        if kind in kinds and kind is not None:
+            text = cut(written.source.text[slice(*written.span_of(argument))], _MAX_SHOWN)
+            reaction = f"{shown} gets {_KIND_WORDS[kind]}, {text}, in place of {expected}"
+            if kind in ("type", "node class") and name in _INSTANCES:
+                reaction = f"{reaction}; write {text}()"
+            return WrongCall(reaction, "", ())
+    return None
 
 
 def _place_of_missing(names: Sequence[str], kinds: Sequence[ArgumentKind | None]) -> int:

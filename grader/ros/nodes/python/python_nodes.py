@@ -152,9 +152,10 @@ _OPTIONS = (
 
 
 class _Name(NamedTuple):
-    """The name that a node is given."""
+    """The name that a node is given, and where."""
 
     name: str | None
+    location: Location
 
 
 _Fact = Endpoint | NodeParameter | NodeFrame | NodeTransform | Timer | Doubt | _Name
@@ -508,9 +509,8 @@ class _Module:
         calls = [(part, call) for part in self._parts for call in part.calls]
         for part, call in calls:
             if self._called(part, call) in _CREATES:
-                self._facts[self._at(call)] = [
-                    _Name(_text(self._argument(part, call, 0, "node_name")))
-                ]
+                name = _text(self._argument(part, call, 0, "node_name"))
+                self._facts[self._at(call)] = [_Name(name, self._at(call))]
         self._read_parameters_that_are_nodes(calls)
         for part, call in calls:
             self._read_call(part, call)
@@ -568,7 +568,14 @@ class _Module:
             for at, full in self._classes.items()
             if self.bases[full] and NODE_CLASSES.issuperset(self.bases[full])
         }
-        return ModuleText(self._name, self._code, self._parts, self._constants.imported, nodes)
+        return ModuleText(
+            self._name,
+            self._code,
+            self._parts,
+            self._constants.imported,
+            nodes,
+            self._class_nodes,
+        )
 
     def type_imports(self) -> Iterator[TypeImport]:
         """Yield the messages, services and actions that the module certainly imports."""
@@ -584,13 +591,13 @@ class _Module:
         facts: "Sequence[_Fact]",
         encodings: Mapping[Location, tuple[ImageEncoding, ...]],
     ) -> NodeFacts:
-        names: set[str | None] = set()
+        names: dict[str | None, Location] = {}
         endpoints, parameters, frames, timers, doubts = [], [], [], [], []
         transforms = []
         for fact in facts:
             match fact:
                 case _Name():
-                    names.add(fact.name)
+                    names[fact.name] = fact.location
                 case Endpoint():
                     known = encodings.get(fact.location, ())
                     endpoints.append(fact._replace(encodings=known))
@@ -604,9 +611,10 @@ class _Module:
                     timers.append(fact)
                 case Doubt():
                     doubts.append(fact)
+        name, named_at = next(iter(names.items())) if len(names) == 1 else (None, None)
         return NodeFacts(
             class_name=self._classes.get(at, ""),
-            name=names.pop() if len(names) == 1 else None,
+            name=name,
             location=at,
             endpoints=tuple(endpoints),
             parameters=tuple(parameters),
@@ -614,6 +622,7 @@ class _Module:
             doubts=tuple(doubts),
             frames=tuple(frames),
             transforms=tuple(transforms),
+            named_at=named_at,
         )
 
     def calls_in(self, function: str) -> Sequence[tuple[str, Location]]:
@@ -814,7 +823,7 @@ class _Module:
         is_base = isinstance(base, QualifiedName) and base.name in NODE_CLASSES
         if (is_super or is_base) and NODE_CLASSES.intersection(self.bases[self._classes[part.of]]):
             name = self._argument(part, call, 0 if is_super else 1, "node_name")
-            yield _Name(_text(name))
+            yield _Name(_text(name), self._at(call))
             for keyword in call.keywords:
                 if keyword.arg in _OPTIONS:
                     yield Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator, Mapping
 
-from grader.ros.nodes.node_facts import CodeRule
+from grader.ros.launch.valid_names import is_node_name, why_no_topic
+from grader.ros.nodes.node_facts import CodeRule, NodeFacts
 from grader.ros.package.found_problems import syntax_fixes
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, Undecided
@@ -11,14 +12,17 @@ from grader.ros.workspace.rules.rule_table import (
     BUFFER_LISTENER,
     CALL_ARGUMENTS,
     CALLBACK_CALL,
+    CALLBACK_PARAMETERS,
     CALLBACK_SLEEP,
     CALLBACK_WAIT,
     CODE_SYNTAX,
     COMPONENT_CONSTRUCTOR,
     COMPONENT_MACRO,
+    CONSTRUCTOR_ORDER,
     ENTITY_KEPT,
     GOAL_STATE,
     NAME_BINDING,
+    NAME_VALID,
     NODE_SPINS,
     PROGRAM_MAIN,
     PUBLISHER_ACTIVATED,
@@ -32,10 +36,12 @@ from grader.ros.workspace.rules.rule_table import (
 _RULES: Mapping[CodeRule, Rule] = {
     "undefined name": NAME_BINDING,
     "callback is called": CALLBACK_CALL,
+    "callback parameters": CALLBACK_PARAMETERS,
     "wrong call": CALL_ARGUMENTS,
     "no goal state": GOAL_STATE,
     "no result": ACTION_RESULT,
     "no response": SERVICE_RESPONSE,
+    "used too early": CONSTRUCTOR_ORDER,
     "nothing spins": NODE_SPINS,
     "no rclpy.init": RCLPY_INIT,
     "waits in a callback": CALLBACK_WAIT,
@@ -67,7 +73,29 @@ def code_facts(workspace: Workspace) -> Iterator[Fact]:
                     yield Mismatch(CODE_SYNTAX, message, at, fixes=fixes)
                 else:
                     yield Undecided("code", f"{at.path} is not read")
+        for node in nodes.nodes:
+            workspace.charge(1 + len(node.endpoints))
+            yield from _invalid_names(node)
         for fault in nodes.faults:
             rule = _RULES[fault.rule]
             at, related = fault.location, fault.related
             yield Mismatch(rule, fault.message, at, related, fault.is_certain, fixes=fault.fixes)
+
+
+def _invalid_names(node: NodeFacts) -> Iterator[Mismatch]:
+    """Yield the names of a node, and of what it opens, that ROS 2 refuses.
+
+    They are checked as they are written in the code, before a launch file gives others.
+    """
+    if node.name and not is_node_name(node.name):
+        message = (
+            f"the name of the node, {node.name!r}, is not valid, so it stops: use letters, digits "
+            "and _"
+        )
+        yield Mismatch(NAME_VALID, message, node.named_at or node.location)
+    for endpoint in node.endpoints:
+        reason = why_no_topic(endpoint.name) if endpoint.name else ""
+        if reason:
+            name = f"the name {endpoint.name!r} of the {endpoint.kind}"
+            message = f"{name} is not valid, so the node stops: {reason}"
+            yield Mismatch(NAME_VALID, message, endpoint.location)

@@ -499,6 +499,9 @@ NAME_BINDING = _code(
 CALLBACK_CALL = _code(
     "callback-call", sentence="A callback is given as a function, and not called."
 )
+CALLBACK_PARAMETERS = _code(
+    "callback-parameters", sentence="A callback takes the arguments that it is called with."
+)
 CALL_ARGUMENTS = _code(
     "call-arguments", sentence="A call of rclpy or tf2_ros has the arguments that it takes."
 )
@@ -506,6 +509,7 @@ SERVICE_RESPONSE = _code(
     "service-response",
     sentence="The callback of a service or action returns its response or result on every path.",
 )
+CONSTRUCTOR_ORDER = _code("constructor-order", sentence="A node is used after super().__init__().")
 GOAL_STATE = _slow_code(
     "goal-state", sentence="A function that executes a goal sets the state of the goal."
 )
@@ -517,6 +521,9 @@ RCLPY_INIT = _code("rclpy-init", sentence="A node is made after rclpy.init().")
 CALLBACK_WAIT = _code("callback-wait", sentence="A callback waits for no other callback.")
 CALLBACK_SLEEP = _slow_code("callback-sleep", sentence="A callback does not sleep.")
 ENTITY_KEPT = _code("entity-kept", sentence="A node keeps what it makes.")
+NAME_VALID = _code(
+    "name-valid", sentence="ROS 2 accepts the names of nodes, topics, services and actions in code."
+)
 PUBLISHER_ACTIVATED = _code(
     "publisher-activated", sentence="A node with a lifecycle activates its publishers."
 )

@@ -1,0 +1,213 @@
+"""Callbacks of rclpy that cannot take what they are called with.
+
+Python raises a TypeError when such a callback is called, which stops the node. A callback counts if
+it is surely the one that the code names: a lambda, a function or a method that nothing decorates,
+defines again or replaces.
+"""
+
+import ast
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.base.text import counted
+from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
+from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.python.constants import dotted, last_name
+from grader.ros.python.parse import Code, location_in, own_nodes, position_of
+from grader.ros.python.walking import walk
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+
+
+class _Callback(NamedTuple):
+    """A parameter that is given a callback, and what that is called with.
+
+    `most` is greater than `given` where rclpy gives another argument to who takes it.
+    """
+
+    position: int | None  # None where it is given by its name only
+    name: str
+    given: int
+    what: str  # in words; empty for nothing
+    most: int = 0
+
+
+# rclpy/{node,subscription,executors,service,client}.py, rclpy/action/{server,client}.py and
+# rclpy/task.py of ros2/rclpy, from Humble to Rolling.
+_CALLBACKS: Mapping[str, Sequence[_Callback]] = {
+    "create_timer": [_Callback(1, "callback", 0, "")],
+    "create_subscription": [_Callback(2, "callback", 1, "the message", 2)],
+    "create_service": [_Callback(2, "callback", 2, "the request and the response")],
+    "ActionServer": [
+        _Callback(3, "execute_callback", 1, "the handle of the goal"),
+        _Callback(None, "goal_callback", 1, "the goal"),
+        _Callback(None, "cancel_callback", 1, "the handle of the goal"),
+        _Callback(None, "handle_accepted_callback", 1, "the handle of the goal"),
+    ],
+    "send_goal_async": [_Callback(1, "feedback_callback", 1, "the feedback")],
+    "add_done_callback": [_Callback(0, "callback", 1, "the future")],
+    "add_on_set_parameters_callback": [_Callback(0, "callback", 1, "the list of parameters")],
+    "add_pre_set_parameters_callback": [_Callback(0, "callback", 1, "the list of parameters")],
+    "add_post_set_parameters_callback": [_Callback(0, "callback", 1, "the list of parameters")],
+}
+_TIMER_INFO = "TimerInfo"  # which rclpy gives by name to the parameter that has it as annotation
+
+
+class CallbackClass(NamedTuple):
+    """A class with its methods, and the attributes and methods that other code may replace."""
+
+    node: ast.ClassDef
+    replaced: Collection[str]
+
+
+def wrong_callbacks(
+    code: Code,
+    parts: Sequence[CodePart],
+    classes: Mapping[Location | None, CallbackClass],
+    defined: Collection[str],
+) -> Iterator[CodeFault]:
+    """Yield the callbacks that cannot be called with what rclpy gives them.
+
+    `classes` are those of the parts, by their places. `defined` are the names of all functions of
+    the package: one that has a function of the name of one of rclpy may do something else.
+    """
+    if "rclpy" not in code.source.text:
+        return
+    for part in parts:
+        faults = []
+        for call in part.calls:
+            called = last_name(call.func)
+            if called in _CALLBACKS and called not in defined:
+                faults += [(call, fault) for fault in _faults_of(code, part, call, classes)]
+        certain = set(certain_nodes(part.node)) if faults else set[ast.AST]()
+        yield from (fault for call, fault in faults if call in certain)
+
+
+def _faults_of(
+    code: Code, part: CodePart, call: ast.Call, classes: Mapping[Location | None, CallbackClass]
+) -> Iterator[CodeFault]:
+    """Yield the callbacks that a call is given and that cannot be called."""
+    called = last_name(call.func)
+    for callback in _CALLBACKS[called]:
+        position = len(call.args) if callback.position is None else callback.position
+        given = given_argument(call, position, callback.name)
+        if given is None:
+            continue
+        function = _find_function(code, part, given, classes)
+        if function is None or _is_given_time(called, function, code):
+            continue
+        is_method = dotted(given).startswith("self.")
+        least, most = _count_parameters(function, is_method=is_method)
+        if _may_be_called(callback, least, most):
+            continue
+        name = "the function" if isinstance(function, ast.Lambda) else f"{function.name}()"
+        taken = _say_parameters(least, most, is_method=is_method)
+        gets = f"{callback.given}: {callback.what}" if callback.what else "none"
+        message = f"{name} takes {taken}, but a callback of {called}() is called with {gets}"
+        at = location_in(code.source, position_of(function))
+        yield CodeFault(
+            "callback parameters", message, at, location_in(code.source, position_of(call))
+        )
+
+
+def _may_be_called(callback: _Callback, least: float, most: float) -> bool:
+    counts = range(callback.given, max(callback.given, callback.most) + 1)
+    return any(least <= count <= most for count in counts)
+
+
+def _say_parameters(least: float, most: float, *, is_method: bool) -> str:
+    """Return how many arguments a function takes, in words."""
+    if most < 0:
+        return "no argument, not even self"
+    if least == float("inf"):
+        return "an argument that has to be given by its name"
+    besides = " besides self" if is_method else ""
+    if least == most:
+        return f"{counted(int(least), 'argument') if least else 'no argument'}{besides}"
+    if most == float("inf"):
+        return f"at least {counted(int(least), 'argument')}{besides}"
+    return f"{int(least)} to {int(most)} arguments{besides}"
+
+
+def _count_parameters(function: Function, *, is_method: bool) -> tuple[float, float]:
+    """Return how many arguments without names a function takes at least and at most.
+
+    Nothing is enough for one with a parameter that must be given by its name.
+    """
+    parameters = function.args
+    most: float = len(parameters.posonlyargs) + len(parameters.args) - is_method
+    least: float = max(most - len(parameters.defaults), 0)
+    if parameters.vararg is not None:
+        most, least = float("inf"), max(least, 0)
+    if any(default is None for default in parameters.kw_defaults):
+        least = float("inf")
+    return least, most
+
+
+def _is_given_time(called: str, function: Function, code: Code) -> bool:
+    """Return whether the callback of a timer may be given when it is called.
+
+    It is by name, in the parameter whose annotation says so, from Jazzy on.
+    """
+    if called != "create_timer" or _TIMER_INFO not in code.source.text:
+        return False
+    parameters = [*function.args.posonlyargs, *function.args.args, *function.args.kwonlyargs]
+    return any(parameter.annotation is not None for parameter in parameters)
+
+
+def _find_function(
+    code: Code, part: CodePart, given: ast.expr, classes: Mapping[Location | None, CallbackClass]
+) -> Function | None:
+    """Return the function that an expression surely is; None if that is not known."""
+    if isinstance(given, ast.Lambda):
+        return given
+    name = dotted(given)
+    if name.startswith("self."):
+        owner = classes.get(part.of)
+        return _find_method(owner, name[5:]) if owner is not None else None
+    if not name or "." in name:
+        return None
+    inside = _functions_named(walk(part.node), name) if part.name else []
+    if inside:
+        return _only_function(inside, own_nodes(part.node))
+    body = own_nodes(code.tree)
+    if any(name in node.names for node in walk(code.tree) if isinstance(node, ast.Global)):
+        return None
+    return _only_function(_functions_named(body, name), body)
+
+
+def _find_method(owner: CallbackClass, name: str) -> Function | None:
+    """Return the method that an attribute of self surely is."""
+    if owner.node.decorator_list or owner.node.keywords or name in owner.replaced:
+        return None
+    body = own_nodes(owner.node)
+    return _only_function(_functions_named(body, name), body)
+
+
+def _functions_named(nodes: Sequence[ast.AST], name: str) -> list[ast.AST]:
+    """Return what binds a name: functions, and anything else that does."""
+    binding: list[ast.AST] = []
+    for node in nodes:
+        match node:
+            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef() if node.name == name:
+                binding.append(node)
+            case ast.Name(ctx=ast.Store() | ast.Del()) if node.id == name:
+                binding.append(node)
+            case ast.arg() if node.arg == name:
+                binding.append(node)
+            case ast.alias() if (node.asname or node.name.partition(".")[0]) in (name, "*"):
+                binding.append(node)
+            case ast.ExceptHandler() | ast.MatchAs() | ast.MatchStar() if node.name == name:
+                binding.append(node)
+    return binding
+
+
+def _only_function(binding: Sequence[ast.AST], body: Sequence[ast.AST]) -> Function | None:
+    """Return what binds a name if it is one function without decorators in a body."""
+    if len(binding) != 1 or binding[0] not in body:
+        return None
+    [function] = binding
+    if not isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef) or function.decorator_list:
+        return None
+    return function

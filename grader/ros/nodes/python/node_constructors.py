@@ -1,0 +1,95 @@
+"""Constructors of nodes that use the node before its base class is initialised."""
+
+import ast
+from collections.abc import Collection, Iterator
+
+from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.python.called_functions import methods_of
+from grader.ros.python.constants import dotted
+from grader.ros.python.parse import Code, location_in, position_of
+from grader.ros.python.walking import children, walk
+
+# Methods of rclpy's Node that read attributes which its constructor sets: rclpy/node.py of
+# ros2/rclpy, from Humble to Rolling.
+_NEED_NODE = frozenset(
+    {
+        *("create_publisher", "create_subscription", "create_service", "create_client"),
+        *("create_timer", "create_rate", "create_lifecycle_publisher"),
+        *("declare_parameter", "declare_parameters", "get_parameter", "get_parameters"),
+        *("get_parameter_or", "has_parameter", "set_parameters"),
+        *("add_on_set_parameters_callback", "get_logger", "get_clock", "get_name"),
+        *("get_namespace", "get_topic_names_and_types", "destroy_node"),
+    }
+)
+# What is evaluated later, or perhaps not at all.
+_UNCERTAIN = (
+    *(ast.If, ast.For, ast.AsyncFor, ast.While, ast.Try, ast.Match, ast.IfExp, ast.BoolOp),
+    *(ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda, ast.comprehension),
+)
+
+
+def early_uses(code: Code, owner: ast.ClassDef, replaced: Collection[str]) -> Iterator[CodeFault]:
+    """Yield the first call in a constructor that needs what super().__init__() makes.
+
+    `owner` is a class whose only base is a node of rclpy, `replaced` are attributes that code sets.
+    """
+    methods = methods_of(owner)
+    constructor = methods.get("__init__")
+    if constructor is None or any(
+        _initialises(method) for name, method in methods.items() if name != "__init__"
+    ):
+        return
+    before: list[ast.stmt] = []
+    for statement in constructor.body:
+        if _initialises(statement):
+            break
+        before.append(statement)
+    else:
+        return
+    known = {*methods, *replaced}
+    for statement in before:
+        called = _first_need(statement, owner, known)
+        if called is not None:
+            message = (
+                f"{dotted(called.func)}() needs what super().__init__() makes, which is called "
+                "later: Python raises an AttributeError; call super().__init__() first"
+            )
+            yield CodeFault(
+                "used too early", message, location_in(code.source, position_of(called))
+            )
+            return
+
+
+def _initialises(node: ast.AST) -> bool:
+    """Return whether code may call the constructor of a base class."""
+    return any(isinstance(part, ast.Attribute) and part.attr == "__init__" for part in walk(node))
+
+
+def _first_need(
+    statement: ast.stmt, owner: ast.ClassDef, known: Collection[str]
+) -> ast.Call | None:
+    """Return the first call of a method that needs the node; also in methods that are called."""
+    methods = methods_of(owner)
+    entered = set[str]()
+    pending: list[ast.AST] = [statement]
+    while pending:
+        node = pending.pop(0)
+        if isinstance(node, _UNCERTAIN):
+            continue
+        pending = [*children(node), *pending]
+        if not isinstance(node, ast.Call) or not dotted(node.func).startswith("self."):
+            continue
+        name = dotted(node.func)[5:]
+        if name in _NEED_NODE and name not in known:
+            return node
+        method = methods.get(name)
+        if method is not None and name not in entered and _runs_when_called(method):
+            entered.add(name)
+            pending += method.body
+    return None
+
+
+def _runs_when_called(method: ast.FunctionDef) -> bool:
+    """Return whether a call runs the body of a method: it is not decorated, and no generator."""
+    yields = any(isinstance(part, ast.Yield | ast.YieldFrom) for part in walk(method))
+    return not yields and not method.decorator_list
