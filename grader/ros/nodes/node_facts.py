@@ -159,6 +159,7 @@ CodeRule = Literal[
     "callback is called",
     "wrong call",
     "no goal state",
+    "rejects goals",
     "no result",
     "no response",
     "nothing spins",

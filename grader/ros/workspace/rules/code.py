@@ -34,6 +34,7 @@ _RULES: Mapping[CodeRule, Rule] = {
     "callback is called": CALLBACK_CALL,
     "wrong call": CALL_ARGUMENTS,
     "no goal state": GOAL_STATE,
+    "rejects goals": GOAL_STATE,
     "no result": ACTION_RESULT,
     "no response": SERVICE_RESPONSE,
     "nothing spins": NODE_SPINS,

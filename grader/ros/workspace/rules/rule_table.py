@@ -507,7 +507,8 @@ SERVICE_RESPONSE = _code(
     sentence="The callback of a service or action returns its response or result on every path.",
 )
 GOAL_STATE = _slow_code(
-    "goal-state", sentence="A function that executes a goal sets the state of the goal."
+    "goal-state",
+    sentence="An action server accepts goals, and the function that executes one sets its state.",
 )
 ACTION_RESULT = _code(
     "action-result", sentence="The result of an action is the field result of its answer."
