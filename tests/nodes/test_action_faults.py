@@ -112,6 +112,8 @@ REJECTED = [
     ),
     ("return self.decided(request)", "answer", False),
     ("raise NotImplementedError", "answer", False),
+    ("def inner():\n    return 1\nreturn GoalResponse.REJECT", "answer", True),
+    ("return await_(request)", "answer_later", False),
     ("return GoalResponse.REJECT", "other.answer", False),
     ("self.server.register_goal_callback(self.now)\nreturn GoalResponse.REJECT", "answer", False),
 ]
@@ -124,6 +126,7 @@ def test_a_server_that_rejects_each_goal(body: str, given: str, *, is_wrong: boo
     text = (
         _ACTION.replace("self.execute", f"self.execute, goal_callback=self.{given}")
         + f"        goal.succeed()\n        return result\n    def answer(self, request):\n{statements}"
+        + "    async def answer_later(self, request):\n        return GoalResponse.ACCEPT\n"
     )
     message = "answer() answers no goal with GoalResponse.ACCEPT, so rclpy rejects each, and executes none"
     messages = [fault.message for fault in nodes_of(text).faults if fault.rule == "rejects goals"]

@@ -8,7 +8,7 @@ from grader.base.source import Location
 from grader.ros.nodes.message_uses import CodePart
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.python.constants import dotted
-from grader.ros.python.parse import Code, every_node, location_in, own_nodes, position_of
+from grader.ros.python.parse import Code, every_node, location_in, position_of
 from grader.ros.python.walking import walk
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
@@ -64,7 +64,7 @@ def rejected_goals(code: Code, registered: Sequence[RegisteredGoal]) -> Iterator
         return
     for goal in registered:
         function = goal.function
-        nodes = own_nodes(function)
+        nodes = walk(function)
         answers = [node.value for node in nodes if isinstance(node, ast.Return)]
         may_differ = bool(function.decorator_list) or any(
             isinstance(node, ast.Raise | ast.Yield | ast.YieldFrom) for node in nodes
