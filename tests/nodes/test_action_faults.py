@@ -101,6 +101,38 @@ def test_goals_without_a_state(end: str, goals: str) -> None:
     assert said == ([goals] if goals else [])
 
 
+REJECTED = [
+    ("return GoalResponse.REJECT", "answer", True),
+    ("if request.order < 3:\n    return GoalResponse.REJECT\nreturn False", "answer", True),
+    ("self.order = request.order", "answer", True),
+    (
+        "if request.order < 3:\n    return GoalResponse.REJECT\nreturn GoalResponse.ACCEPT",
+        "answer",
+        False,
+    ),
+    ("return self.decided(request)", "answer", False),
+    ("raise NotImplementedError", "answer", False),
+    ("def inner():\n    return 1\nreturn GoalResponse.REJECT", "answer", True),
+    ("return await_(request)", "answer_later", False),
+    ("return GoalResponse.REJECT", "other.answer", False),
+    ("self.server.register_goal_callback(self.now)\nreturn GoalResponse.REJECT", "answer", False),
+]
+
+
+@pytest.mark.parametrize(("body", "given", "is_wrong"), REJECTED)
+def test_a_server_that_rejects_each_goal(body: str, given: str, *, is_wrong: bool) -> None:
+    """A function that never returns GoalResponse.ACCEPT rejects what it is asked."""
+    statements = "".join(f"        {line}\n" for line in body.splitlines())
+    text = (
+        _ACTION.replace("self.execute", f"self.execute, goal_callback=self.{given}")
+        + f"        goal.succeed()\n        return result\n    def answer(self, request):\n{statements}"
+        + "    async def answer_later(self, request):\n        return GoalResponse.ACCEPT\n"
+    )
+    message = "answer() answers no goal with GoalResponse.ACCEPT, so rclpy rejects each, and executes none"
+    messages = [fault.message for fault in nodes_of(text).faults if fault.rule == "rejects goals"]
+    assert messages == ([message] if is_wrong else [])
+
+
 _LOOP = """
 import rclpy
 from rclpy.action import ActionServer

@@ -263,6 +263,22 @@ def test_goals_without_a_state(library: str, members: str, *, is_ended: bool) ->
     assert faults == ([] if is_ended else [("no goal state", False)])
 
 
+@pytest.mark.parametrize(
+    ("library", "answers", "is_wrong"),
+    [
+        ("rclcpp_action::", "return rclcpp_action::GoalResponse::REJECT;", True),
+        ("rclcpp_action::", "return ok ? Answer::ACCEPT_AND_DEFER : Answer::REJECT;", False),
+        ("rclcpp_action::", "return decided(order);", False),
+        ("other::", "return GoalResponse::REJECT;", False),
+    ],
+)
+def test_servers_that_reject_each_goal(library: str, answers: str, *, is_wrong: bool) -> None:
+    """A server executes no goal where nothing is accepted."""
+    members = f"int answer(int order) {{ {answers} }} void run(Handle goal) {{ goal->succeed(); }}"
+    faults = [(each.rule, each.is_certain) for each in faults_of(_SERVE.format(library), members)]
+    assert faults == ([("rejects goals", False)] if is_wrong else [])
+
+
 _ACTIVE = """
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 class Talker : public {} {{

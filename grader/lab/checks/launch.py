@@ -126,6 +126,8 @@ def node_runs(
     places = find_places(package, evaluated, "read", "urdf", "include", built=built)
     wanted_nodes = tuple(nodes or ())
     choices = [_names_in(evaluated, node.split(" or ")) for node in wanted_nodes]
+    if evaluated.components:
+        choices = [_with_components_of(submission, evaluated, names) for names in choices]
     missing = _missing_nodes(evaluated, choices)
     if missing and not _may_start(evaluated, missing):
         return _fail_missing(evaluated, missing, wanted_nodes)
@@ -187,6 +189,23 @@ def _names_in(launch: "Launch", names: Iterable[str]) -> list[str]:
     return [
         other if other in known and name not in known else name for name, other in others.items()
     ]
+
+
+def _with_components_of(
+    submission: Submission, launch: "Launch", names: Sequence[str]
+) -> list[str]:
+    """Return names of nodes with those of the components that are the nodes of these programs."""
+    code = submission.workspace.code
+    all_names = [*names]
+    for name in names:
+        package, _, executable = name.rpartition("/")
+        own_code = code.by_package.get(package)
+        for program in own_code.programs if own_code is not None else ():
+            if program.name == executable and program.nodes:
+                for node in launch.nodes:
+                    if node.package == package and (*code.nodes_of(node),) == program.nodes:
+                        all_names.append(node.name)
+    return [*dict.fromkeys(all_names)]
 
 
 def _missing_nodes(launch: "Launch", choices: Sequence[Sequence[str]]) -> list[Sequence[str]]:

@@ -17,7 +17,7 @@ def takes_parameters(submission: Submission, *, refuses: bool = False) -> Outcom
 
     Args:
         refuses: Whether it has to refuse values: by a callback whose result is not always
-            successful, or by a range in the descriptor of a parameter.
+            successful, or by a range or `read_only` in the descriptor of a parameter.
     """
     from grader.ros.api import parameter_callbacks  # late: few rubrics ask for it
 

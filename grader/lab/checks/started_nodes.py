@@ -236,7 +236,8 @@ def _phrases(arguments: Iterable[str]) -> Iterator[Sequence[str]]:
             yield phrase
             phrase = []
         phrase.append(word)
-    yield phrase
+    if phrase:
+        yield phrase
 
 
 def _is_phrase(words: Sequence[str | None], phrase: Sequence[str]) -> bool:

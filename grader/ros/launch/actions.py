@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from grader.ros.installation.places import PREFIX
 from grader.ros.launch.call_arguments import items_in, kind_of
-from grader.ros.launch.components import load_components, start_container
+from grader.ros.launch.components import load_by_command, load_components, start_container
 from grader.ros.launch.launch_classes import CONDITION, ENTITY, SOURCE, class_named, is_a
 from grader.ros.launch.launch_model import (
     NAMESPACE,
@@ -583,7 +583,9 @@ def _execute_process(
         start_node(visitor.findings, call, context, when, visitor.parameters.pop(call, ()))
     else:
         evaluate = evaluate_process
-        start_process(visitor.findings, call, context, when)
+        words = start_process(visitor.findings, call, context, when)
+        if words and not load_by_command(visitor.findings, call, words, when):
+            visitor.findings.commands.append(" ".join(words))
     if when is not False and before is not False:
         message = f"the same {call.short} is executed twice: make two of them"
         kind = EvaluationFails if before and when else Undetermined

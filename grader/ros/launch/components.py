@@ -12,15 +12,32 @@ from grader.ros.launch.launch_model import (
     Container,
     Context,
     Findings,
+    GivenParameters,
     LoadedComponent,
     StartedNode,
 )
-from grader.ros.launch.node_parameters import TO_ALL, evaluate_parameters
+from grader.ros.launch.node_parameters import (
+    TO_ALL,
+    evaluate_parameters,
+    parameters_in_words,
+    remap_rules,
+)
 from grader.ros.launch.started_nodes import REMAPS, evaluate_remaps, namespace_below
-from grader.ros.launch.substitutions import CONDITIONS, condition_holds, known_text
+from grader.ros.launch.substitutions import (
+    CONDITIONS,
+    PART_UNKNOWN,
+    condition_holds,
+    known_text,
+)
 from grader.ros.python.values import Call, EvaluationSignal, Value
 
 _DESCRIPTIONS = "composable_node_descriptions"
+# The options of ros2 component load and standalone, and whose they have a word each:
+# ros2component/ros2component/api/__init__.py of jazzy.
+_NAME, _BELOW = ("-n", "--node-name"), ("--node-namespace",)
+_REMAP, _PARAMETER = ("-r", "--remap-rule"), ("-p", "--parameter")
+_OF_NODE = (*_NAME, *_BELOW, *_REMAP, *_PARAMETER)
+_OF_NO_NODE = ("--log-level", "-e", "--extra-argument", "-c", "--container-node-name")
 
 
 def start_container(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
@@ -47,6 +64,49 @@ def load_components(findings: Findings, call: Call, context: Context, when: bool
         except EvaluationSignal:
             container = None
     _add_components(findings, call, context, when, container)
+
+
+def load_by_command(findings: Findings, call: Call, words: list[str], when: bool | None) -> bool:
+    """Add the component that `ros2 component load` or `standalone` loads, if a command is one.
+
+    The latter starts a container, whose name has a number. What a launch file gives to all of its
+    nodes does not reach them.
+    """
+    at = findings.locate(call.at)
+    match words:
+        case ["ros2", "component", "standalone", package, plugin, *options]:
+            findings.containers.append(Container(None, when, at))
+            container: str | None = ""
+        case ["ros2", "component", "load", target, package, plugin, *options]:
+            container = None if PART_UNKNOWN in target else _absolute(target)
+        case _:
+            return False
+    component = LoadedComponent(None, None, when, at, at, container)
+    if not any(word.startswith("-") or PART_UNKNOWN in word for word in (package, plugin)):
+        node = _with_options(StartedNode(package, plugin.removeprefix("::"), when, at), options)
+        component = component._replace(package=package, plugin=plugin, node=node)
+    findings.components.append(component)
+    return True
+
+
+def _with_options(node: StartedNode, options: list[str]) -> StartedNode | None:
+    """Return a node with what the options of its command give it; None if they are not known."""
+    names, words = options[::2], options[1::2]
+    is_known = len(names) == len(words) and {*names} <= {*_OF_NODE, *_OF_NO_NODE}
+    if not is_known or any(PART_UNKNOWN in word for word in words):
+        return None
+    remaps: list[tuple[str, ...]] = []
+    parameters: list[GivenParameters] = []
+    for name, word in zip(names, words, strict=True):
+        if name in _NAME:
+            node = node._replace(node_name=word)
+        elif name in _BELOW:
+            node = node._replace(namespace=word)
+        elif name in _REMAP:
+            remaps += [(old, new) for old, _, new in remap_rules(["-r", word])]
+        elif name in _PARAMETER:
+            parameters += parameters_in_words(["-p", word], node.location)
+    return node._replace(remaps=tuple(remaps), parameters=tuple(parameters), arguments=())
 
 
 def _absolute(name: str) -> str:

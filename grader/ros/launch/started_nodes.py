@@ -56,7 +56,9 @@ _GIVEN: Mapping[str, Purpose] = {
     _RVIZ: "rviz",
 }  # the nodes that are given a file
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
-_STARTS = re.compile(rf"ros2\s+(run|launch)|rviz2|{PART_UNKNOWN}")
+_STARTS = re.compile(
+    rf"ros2\s++(?:run|launch|component\s++(?:load|standalone))|rviz2|{PART_UNKNOWN}"
+)
 # Debuggers, terminals and other programs that start the program behind them.
 _PREFIXES = frozenset(
     {
@@ -225,18 +227,18 @@ def _given_name(rules: Iterable[tuple[str, str, str]], call: Call, context: Cont
     return text if isinstance(text, str) else None
 
 
-def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
-    """Add the node that a command starts, if it does."""
+def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> list[str]:
+    """Add the node that a command starts, if it does; else return the words of the command."""
     if when is False:
-        return
+        return []
     words = _words_of_command(call, context)
     node = _node_of_command(words, call)
     if node is not None:
         start_node(findings, node, context, when)
-        return
-    findings.commands.append(" ".join(words))
+        return []
     if _STARTS.search(" ".join(words)):
         findings.add_unknown("the nodes that a command starts are not evaluated", call.at)
+    return words
 
 
 def _words_of_command(call: Call, context: Context) -> list[str]:

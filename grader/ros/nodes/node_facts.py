@@ -160,6 +160,7 @@ CodeRule = Literal[
     "callback parameters",
     "wrong call",
     "no goal state",
+    "rejects goals",
     "no result",
     "no response",
     "used too early",

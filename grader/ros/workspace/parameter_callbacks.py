@@ -4,11 +4,12 @@ import re
 from typing import NamedTuple
 
 from grader.base.source import Location
+from grader.ros.workspace.model.code_text import code_alone
 from grader.ros.workspace.model.workspace import Workspace
 
 _ENDINGS = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
 _BUILDS = ("CMakeLists.txt", "setup.py")
-_COMMENT = re.compile(r"(?:#(?!include)|//)[^\n]*")
+_COMMENT = re.compile(r"#[^\n]*")  # of CMake
 # Callbacks that can refuse values, and those that are told of values that were set.
 _REFUSING = re.compile(r"\badd_(?:on|pre)_set_parameters_callback\s*+\(")
 _TOLD = re.compile(
@@ -25,7 +26,8 @@ _DEFAULT = re.compile(
 _CONDITION = re.compile(r"\b(?:if|else)\b")
 _THROWS = re.compile(r"\bthrow\b")
 _SUCCEEDS = re.compile(r"^([ \t]*+)\S*successful\s*+=", re.MULTILINE)
-_RANGE = re.compile(r"\b(?:floating_point_range|integer_range)\b")
+# What a descriptor limits a parameter to: a range, or the value that it has first.
+_LIMITS = re.compile(r"\b(?:floating_point_range|integer_range)\b|\bread_only\s*+=\s*+[Tt]rue\b")
 _GENERATES = re.compile(r"\bgenerate_parameter_(?:library|module)\b")
 _READS = re.compile(r"\bget_parameters?\s*+[(<]")
 
@@ -49,17 +51,20 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
     may_refuse = False
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, (*_ENDINGS, *_BUILDS)):
-            code = _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
+            if source.path.endswith(_ENDINGS):
+                code = code_alone(source.text, source.path)
+            else:
+                code = _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
             if _REFUSING.search(code):
                 may_refuse = may_refuse or _may_refuse(code)
-            for pattern in (_REFUSING, _TOLD, _REFUSES, _RANGE, _GENERATES, _READS):
+            for pattern in (_REFUSING, _TOLD, _REFUSES, _LIMITS, _GENERATES, _READS):
                 match = pattern.search(code)
                 if match is not None:
                     first.setdefault(pattern, source.at(match.start()))
     can_refuse = first.get(_REFUSING) if _REFUSES in first else None
     return _ParameterCallbacks(
         first.get(_REFUSING) or first.get(_TOLD),
-        can_refuse or first.get(_RANGE),
+        can_refuse or first.get(_LIMITS),
         _GENERATES in first,
         _READS in first,
         may_refuse,

@@ -39,6 +39,8 @@ _HANDLES = dict.fromkeys(
 # What sets the state of a goal, if nothing cancels it, and what destroys it otherwise:
 # rclcpp_action/include/rclcpp_action/server_goal_handle.hpp.
 _ENDING_STATES, _ACTIONS = ("succeed", "abort"), "rclcpp_action::"
+# The answers to a goal: rclcpp_action/include/rclcpp_action/types.hpp.
+_ACCEPTS, _REJECTS = ("ACCEPT_AND_EXECUTE", "ACCEPT_AND_DEFER"), "REJECT"
 # Publishers of these nodes send nothing before: rclcpp_lifecycle/lifecycle_publisher.hpp.
 _LIFECYCLE, _ACTIVATES = "rclcpp_lifecycle::LifecycleNode", "on_activate"
 _LISTENER, _BUFFER = "TransformListener", "Buffer"
@@ -71,7 +73,7 @@ def cpp_faults(
     rules = [search.destroyed(), search.without_rotation(), search.waiting()]
     if is_read:
         rules += [search.without_listener(), search.without_goal_state()]
-        rules.append(search.without_activation())
+        rules += [search.without_activation(), search.rejected_goals()]
     if is_read and is_program:
         rules.append(search.without_spin())
     for rule in rules:
@@ -148,6 +150,19 @@ class _CppSearch:
                         "call succeed()"
                     )
                     yield CodeFault("no goal state", message, call.location, is_certain=False)
+
+    def rejected_goals(self) -> Iterator[CodeFault]:
+        """Yield action servers in files in which goals are rejected, and none is accepted."""
+        uses = self._unit.uses
+        if _REJECTS not in uses or not uses.keys().isdisjoint(_ACCEPTS):
+            return
+        for function in self._methods:
+            for call in self._calls(function, "create_server"):
+                if called_name(call).startswith(_ACTIONS):
+                    message = (
+                        "the server rejects each goal: GoalResponse::ACCEPT_AND_EXECUTE accepts"
+                    )
+                    yield CodeFault("rejects goals", message, call.location, is_certain=False)
 
     def destroyed(self) -> Iterator[CodeFault]:
         """Yield what a method makes and nothing keeps: it is destroyed when the method ends."""

@@ -55,6 +55,37 @@ def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Ite
         yield CodeFault("no goal state", message, at, place, is_certain=False)
 
 
+def rejected_goals(code: Code, registered: Sequence[RegisteredGoal]) -> Iterator[CodeFault]:
+    """Yield functions that answer each goal without GoalResponse.ACCEPT: rclpy rejects all goals.
+
+    One that raises an error, or answers with what is computed, may accept goals elsewhere.
+    """
+    if "register_goal_callback" in code.source.text:
+        return
+    for goal in registered:
+        function = goal.function
+        nodes = walk(function)
+        answers = [node.value for node in nodes if isinstance(node, ast.Return)]
+        may_differ = bool(function.decorator_list) or any(
+            isinstance(node, ast.Raise | ast.Yield | ast.YieldFrom) for node in nodes
+        )
+        if not may_differ and all(map(_is_rejection, answers)):
+            message = (
+                f"{function.name}() answers no goal with GoalResponse.ACCEPT, so rclpy rejects "
+                "each, and executes none"
+            )
+            at = location_in(code.source, position_of(function))
+            place = location_in(code.source, position_of(goal.call))
+            yield CodeFault("rejects goals", message, at, place, is_certain=False)
+
+
+def _is_rejection(answer: ast.expr | None) -> bool:
+    """Return whether an answer rejects a goal: what is no GoalResponse does so as well."""
+    if answer is None or isinstance(answer, ast.Constant):
+        return True
+    return dotted(answer).endswith("GoalResponse.REJECT")
+
+
 class _OpenPaths(NamedTuple):
     """How statements are left on paths on which nothing has cancelled the goal."""
 

@@ -25,6 +25,7 @@ from grader.ros.nodes.python.action_faults import (
     buffers_without_listener,
     goals_without_state,
     loops_without_transforms,
+    rejected_goals,
 )
 from grader.ros.nodes.python.branches import calls_in_branches
 from grader.ros.nodes.python.callback_parameters import CallbackClass, wrong_callbacks
@@ -547,12 +548,20 @@ class _Search:
 
     def of_actions(self) -> Iterator[CodeFault]:
         """Yield what is done wrong with actions and transforms."""
-        goals = []
+        goals, answering = list[RegisteredGoal](), list[RegisteredGoal]()
         for registered in self._registered:
-            function = self._function(registered.given, registered.part)
-            if registered.by == "ActionServer" and function is not None:
-                goals.append(RegisteredGoal(function, registered.call))
+            if registered.by != "ActionServer":
+                continue
+            call, part = registered.call, registered.part
+            function = self._function(registered.given, part)
+            if function is not None:
+                goals.append(RegisteredGoal(function, call))
+            answer = given_argument(call, len(call.args), "goal_callback")
+            function = self._function(answer, part) if answer is not None else None
+            if function is not None:
+                answering.append(RegisteredGoal(function, call))
         yield from goals_without_state(self._code, goals)
+        yield from rejected_goals(self._code, answering)
         text = self._code.source.text
         if goals and "lookup_transform" in text and not self._may_have_threads():
             yield from loops_without_transforms(self._code, goals, self._functions)

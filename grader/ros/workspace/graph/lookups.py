@@ -7,6 +7,7 @@ from typing import Literal, NamedTuple
 from grader.base.source import Location
 from grader.ros.nodes.node_facts import NodeFrame
 from grader.ros.workspace.graph.code_ends import frames_of
+from grader.ros.workspace.model.code_text import code_alone
 from grader.ros.workspace.model.workspace import Workspace
 
 _CPP = (".cpp", ".hpp", ".h")
@@ -20,9 +21,17 @@ _LOOKUPS = (
     *_OTHER_LOOKUPS,
 )
 
-
-_COMMENT = re.compile(r"(?:#|//)[^\n]*")
-_INVERTS = re.compile(r"[Ii]nver(?:se|t)|conjugate|transpose|\.inv\(|\.T\b|invXform|linalg\.solve")
+# What inverts a transform, a matrix or a rotation: functions of numpy, tf_transformations, tf2,
+# Eigen, KDL, scipy and others, and attributes. Others whose names say so may do it.
+_INVERTING = re.compile(
+    r"(?:[a-z]++_)?[Ii]nver(?:se|t)"
+    r"(?:Times|_?(?:[Mm]atrix|[Tt]ransform(?:ation)?|[Pp]ose|[Qq]uaternion))?"
+    r"|(?:[a-z]++_)?q?(?:inverse|conjugate)|transpose|p?inv|invXform"
+)
+_MAY_INVERT = re.compile(r"[Ii]nver(?:se|t)(?!_?(?:[Kk]in|[Dd]yn))")
+_CALLED = re.compile(r"\b(\w++)\s*+\(")
+_DEFINED = re.compile(r"\bdef\s++\w++")
+_INVERTED = re.compile(r"(?<!self)\.(?:inverse|conjugate|transpose|T)\b(?!\s*+=[^=])|linalg\.solve")
 # A rotation of coordinates without a library: what a sine and a cosine are multiplied with or
 # assigned to. Half an angle is a quaternion's.
 _ROTATES = {
@@ -55,7 +64,7 @@ def looked_up_transforms(workspace: Workspace) -> tuple[Sequence[_LookedUp], boo
     """
     lookups = [*_read_lookups(workspace)]
     texts = _texts_with_lookups(workspace) if lookups else {}
-    inverting = {path: _inverts(text) for path, text in texts.items()}
+    inverting = {path: _inverts(code_alone(text, path)) for path, text in texts.items()}
     known = [
         lookup._replace(inverts=inverting.get(lookup.location.path, "no")) for lookup in lookups
     ]
@@ -71,12 +80,13 @@ def _texts_with_lookups(workspace: Workspace) -> Mapping[str, str]:
     return texts
 
 
-def _inverts(text: str) -> _Inverting:
+def _inverts(code: str) -> _Inverting:
     """Return whether code inverts a transform: by a function, or perhaps number by number."""
-    code = _COMMENT.sub("", text)
-    if _INVERTS.search(code):
+    code = _DEFINED.sub("", code)
+    called = {*_CALLED.findall(code)}
+    if _INVERTED.search(code) or any(map(_INVERTING.fullmatch, called)):
         return "yes"
-    if _CONJUGATES.search(code):
+    if any(map(_MAY_INVERT.search, called)) or _CONJUGATES.search(code):
         return "perhaps"
     for name in ("sin", "cos"):
         angles = [*_ROTATES[name].findall(code), *_FACTOR[name].findall(code)]

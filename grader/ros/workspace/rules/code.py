@@ -39,6 +39,7 @@ _RULES: Mapping[CodeRule, Rule] = {
     "callback parameters": CALLBACK_PARAMETERS,
     "wrong call": CALL_ARGUMENTS,
     "no goal state": GOAL_STATE,
+    "rejects goals": GOAL_STATE,
     "no result": ACTION_RESULT,
     "no response": SERVICE_RESPONSE,
     "used too early": CONSTRUCTOR_ORDER,

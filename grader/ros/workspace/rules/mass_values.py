@@ -13,7 +13,13 @@ from grader.ros.urdf.model import Collision, Cylinder, Inertial, Link, Mesh, Vis
 from grader.ros.urdf.shapes import PlacedShape
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Fact, Mismatch, warning
-from grader.ros.workspace.rules.rule_table import CENTRE_OF_MASS, INERTIA_AXIS, INERTIA_SIZE, Rule
+from grader.ros.workspace.rules.rule_table import (
+    CENTRE_OF_MASS,
+    INERTIA_AXIS,
+    INERTIA_PLACE,
+    INERTIA_SIZE,
+    Rule,
+)
 
 _AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _NAMES = "xyz"
@@ -42,6 +48,7 @@ def mass_facts(workspace: Workspace) -> Iterator[Fact]:
             for wrong in (
                 *_centre_outside(link, inertial),
                 *_other_axis(link, inertial),
+                *_other_centre(link, inertial),
                 *too_large,
             ):
                 key = (wrong.rule, wrong.location.path, wrong.location.line)
@@ -64,7 +71,7 @@ def _centre_outside(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
     if not placed:
         return
     centre = inertial.origin.placed_in().translation
-    extents = [_extent(placed, axis) for axis in _AXES]
+    extents = _extents(placed)
     outside = []
     for coordinate, (least, most) in zip(centre, extents, strict=True):
         outside.append(max(least - coordinate, coordinate - most, 0.0))
@@ -80,6 +87,35 @@ def _centre_outside(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
         yield warning(CENTRE_OF_MASS, message, at.resolve())
 
 
+def _other_centre(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
+    """Yield that an inertia is that of the shape of a link about its middle, which is elsewhere.
+
+    A centre of mass with an offset may be meant, one at the origin of the link is forgotten.
+    """
+    elements: list[Visual | Collision] = [*link.visuals, *link.collisions]
+    shapes = with_volume(link.collisions) or with_volume(link.visuals)
+    if len(shapes) != 1 or any(inertial.origin.xyz):
+        return
+    shape, origin = shapes[0]
+    if isinstance(shape, Mesh) or any(each.origin.xyz != origin.xyz for each in elements):
+        return
+    T_link_shape = origin.placed_in()
+    rotation = (inertial.origin.placed_in().inverse() @ T_link_shape).rotation
+    expected = turned(solid_inertia(shape, inertial.mass), rotation)
+    size = hypot(*(most - least for least, most in _extents([PlacedShape(shape, T_link_shape)])))
+    away = hypot(*T_link_shape.translation)
+    is_same = dist(inertial.inertia, expected) <= _EQUAL * max(map(abs, expected))
+    if not is_same or away <= _MARGIN + _MARGIN_SHARE * size:
+        return
+    message = (
+        f"the inertia of {quoted(link.name)} is that of its shape about the middle, but its centre "
+        f'of mass is {in_millimetres(away)} away: write <origin xyz="{point(origin.xyz)}"/>'
+    )
+    at = place(inertial.location)
+    if at is not None:
+        yield warning(INERTIA_PLACE, message, at.resolve())
+
+
 def _too_large(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
     """Yield an inertia that no body of the size of the shapes has, whatever is in it.
 
@@ -90,8 +126,7 @@ def _too_large(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
         return
     centre = inertial.origin.placed_in().translation
     farthest: list[float] = []
-    for coordinate, axis in zip(centre, _AXES, strict=True):
-        least, most = _extent(placed, axis)
+    for coordinate, (least, most) in zip(centre, _extents(placed), strict=True):
         farthest.append(max(most - coordinate, coordinate - least))
     reach = hypot(*farthest)
     ixx, _, _, iyy, _, izz = inertial.inertia
@@ -107,9 +142,13 @@ def _too_large(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
         yield warning(INERTIA_SIZE, message, at.resolve())
 
 
-def _extent(placed: list[PlacedShape], axis: Vector) -> tuple[float, float]:
-    extents = [shape.extent(axis) for shape in placed]
-    return min(least for least, _ in extents), max(most for _, most in extents)
+def _extents(placed: list[PlacedShape]) -> list[tuple[float, float]]:
+    """Return from where to where shapes reach along each axis."""
+    extents: list[tuple[float, float]] = []
+    for axis in _AXES:
+        each = [shape.extent(axis) for shape in placed]
+        extents.append((min(least for least, _ in each), max(most for _, most in each)))
+    return extents
 
 
 def _other_axis(link: Link, inertial: Inertial) -> Iterator[Mismatch]:

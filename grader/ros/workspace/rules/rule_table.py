@@ -511,7 +511,8 @@ SERVICE_RESPONSE = _code(
 )
 CONSTRUCTOR_ORDER = _code("constructor-order", sentence="A node is used after super().__init__().")
 GOAL_STATE = _slow_code(
-    "goal-state", sentence="A function that executes a goal sets the state of the goal."
+    "goal-state",
+    sentence="An action server accepts goals, and the function that executes one sets its state.",
 )
 ACTION_RESULT = _code(
     "action-result", sentence="The result of an action is the field result of its answer."
@@ -553,6 +554,9 @@ WHEEL_SIZE = _value(
     "wheel-size",
     sentence="The wheel radius of a controller or a Gazebo plugin is that of the robot.",
 )
+WHEEL_LIMIT = _other_value(
+    "wheel-limit", sentence="A wheel that is driven in Gazebo turns without limits."
+)
 JOINT_LIMIT = _other_value(
     "joint-limit", sentence="The limits in a file are within those of the robot's joints."
 )
@@ -580,6 +584,9 @@ CENTRE_OF_MASS = _other_value(
 )
 INERTIA_AXIS = _other_value(
     "inertia-axis", sentence="The inertia of a cylinder is that about its own axis."
+)
+INERTIA_PLACE = _other_value(
+    "inertia-place", sentence="The inertia of a shape about its middle has its <origin> there."
 )
 INERTIA_SIZE = _other_value(
     "inertia-size", sentence="The inertia of a link is that of a body of its size."

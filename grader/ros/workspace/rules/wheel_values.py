@@ -37,6 +37,7 @@ from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
     WHEEL_AXIS,
     WHEEL_DISTANCE,
+    WHEEL_LIMIT,
     WHEEL_SIDE,
     WHEEL_SIZE,
     Rule,
@@ -51,6 +52,7 @@ _SIDED = ("track", "pivots", "half sum")  # whose first groups are left and righ
 _ROLLING = ("track", "half sum", "radius", "diameter")  # of joints that turn wheels
 _PLACING = ("origin", "axis", "cylinder", "sphere")  # elements that place and size wheels
 _BASE = "base_frame_id"
+_MAX_TURN = 100.0  # radians between limits, of which a wheel of 0.1 m rolls 10 m
 _MAX_WHEELS = 20  # that one parameter is about; each takes as long as the robot has joints
 
 
@@ -137,6 +139,8 @@ def _faults_under_all(source: _Source) -> Sequence[Mismatch]:
     first: Sequence[Mismatch] = ()
     for robot in source.robots:
         faults = [*_faults_of(source, Configuration(robot.robot))]
+        if robot.root.find("gazebo/plugin") is None:  # nothing else stops a joint
+            faults = [fault for fault in faults if fault.rule is not WHEEL_LIMIT]
         if not faults:
             return ()
         first = first or faults
@@ -227,6 +231,7 @@ def _faults_of(source: _Source, robot: Configuration) -> Iterator[Mismatch]:
             placed = _PlacedWheels(wheels, kind, _places_of_joints(wheels, groups))
             faults = [*_other_sides(placed), *_other_axes(placed)]
             yield from faults
+            yield from _limited_wheels(placed)
         is_of_sides = bool(faults) and kind in _SIDED  # a number of these wheels means nothing
         if not is_of_sides and not _is_corrected(source, row):
             for number in source.parameters(key):
@@ -351,6 +356,26 @@ def _other_axes(placed: _PlacedWheels) -> Iterator[Mismatch]:
             "should point to the left"
         )
         yield placed.fault(WHEEL_AXIS, placed.backward, message)
+
+
+def _limited_wheels(placed: _PlacedWheels) -> Iterator[Mismatch]:
+    """Yield the wheels that stop after some turns, as those of a simulated robot do.
+
+    Limits that are meant to be none are wider.
+    """
+    if placed.kind not in _ROLLING:
+        return
+    for wheel in placed.wheels.all:
+        joint, limit = wheel.joint, wheel.joint.limit
+        if joint.type != "revolute" or limit is None or limit.upper - limit.lower > _MAX_TURN:
+            continue
+        message = (
+            f"{quoted(joint.name)} turns from {limit.lower:.4g} to {limit.upper:.4g} rad, where "
+            "the wheel stops: write type='continuous'"
+        )
+        at = limit.location or joint.location
+        if at is not None:
+            yield warning(WHEEL_LIMIT, message, at.resolve(), placed.places[joint.name])
 
 
 def _toward_left(wheels: _Wheels) -> Vector:

@@ -1,0 +1,29 @@
+"""The text of code without what it does not do: its comments and texts."""
+
+import re
+
+_PYTHON = re.compile(
+    r'#[^\n]*|"""(?:[^"\\]|\\.|"(?!""))*+(?:"""|\Z)|"(?:[^"\\\n]|\\.)*+"?'
+    r"|'''(?:[^'\\]|\\.|'(?!''))*+(?:'''|\Z)|'(?:[^'\\\n]|\\.)*+'?",
+    re.DOTALL,
+)
+_CPP = re.compile(
+    r'//[^\n]*|/\*(?:[^*]|\*(?!/))*+(?:\*/|\Z)|"(?:[^"\\\n]|\\.)*+"?|\'(?:[^\'\\\n]|\\.)*+\'?',
+    re.DOTALL,
+)
+_FILLED = re.compile(r"\{[^{}]*+\}|(\S)")
+
+
+def code_alone(text: str, path: str) -> str:
+    """Return code with blanks in place of its comments and texts, so that places stay the same.
+
+    What a text of Python is filled with by its f"{name}" is code.
+    """
+    return (_PYTHON if path.endswith(".py") else _CPP).sub(_blank, text)
+
+
+def _blank(match: re.Match[str]) -> str:
+    written, start = match[0], match.start()
+    if written[0] in "\"'" and "f" in match.string[max(start - 2, 0) : start].lower():
+        return _FILLED.sub(lambda part: " " if part[1] else part[0], written)
+    return re.sub(r"\S", " ", written)
