@@ -148,7 +148,7 @@ WEIGHTS = {
     "classroom": 70_400,  # functions of complexity at most 10
     "files": 12_350,  # the end of a log is read from a file, a folder or a pipe
     "lab": 100,
-    "lab.authoring": 47_500,  # drafts ask about nodes and graphs, and give points by the mean
+    "lab.authoring": 48_350,  # drafts ask about nodes and graphs, and give points by the mean
     "lab.checks": 51_500,  # checks of the graph of what is launched
     "lab.documents": 10_900,
     "lab.grading": 13_000,  # what hides the base
@@ -162,15 +162,15 @@ WEIGHTS = {
     "ros.installation": 33_050,  # CMake's targets and expressions, and the dependencies of package.xml
     "ros.interfaces": 4_400,  # types have the releases that they exist in
     "ros.known": 10_400,  # rows of what programs open, by release
-    "ros.launch": 46_200,  # the words of Lyrical, components, and what follows an error
+    "ros.launch": 47_100,  # the words of Lyrical, components, and what follows an error
     "ros.log": 4_050,  # names of findings beside their lines, and what keeps a started robot from being read
     "ros.mesh": 4_300,
-    "ros.nodes": 66_600,  # transforms, actions and calls in Python and C++
+    "ros.nodes": 71_600,  # transforms, actions and calls in Python and C++
     "ros.package": 28_150,  # fixes of files that cannot be read
     "ros.python": 30_000,  # branches, and constants of classes
     "ros.slips": 7_800,  # slips are proven by reading the robot again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads
-    "ros.workspace": 162_250,  # a function for each rule, the graph, and the names that editors complete and rename
+    "ros.workspace": 163_750,  # a function for each rule, the graph, and the names that editors complete and rename
     "ros.xacro": 28_600,  # xacro:attribute, and letters outside of ASCII
     "ros.xml": 13_400,  # attributes of broken tags and of newer versions of URDF
     "": 400,
