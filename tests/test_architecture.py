@@ -162,7 +162,7 @@ WEIGHTS = {
     "ros.installation": 33_050,  # dependencies of package.xml with their tags; the packages that CMake finds, tests, expressions that are not closed; names of program files, targets of tests and of other projects; what stops a build from a release on; functions for what was branches of long ones
     "ros.interfaces": 4_400,  # since and until when there is a type; functions for the checks of one default
     "ros.known": 10_400,  # launch arguments that name topics and files of included launch files; keys of libraries, elements of Gazebo Classic; the packages that are released; when each table was read, and the last release that was read for it; rows of what programs open, for graphs
-    "ros.launch": 46_200,  # substitutions of Nav2 and changes of the environment; what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
+    "ros.launch": 46_300,  # where a launch file gives a parameter; substitutions of Nav2 and changes of the environment; what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
     "ros.log": 4_050,  # names of findings beside their lines, and what keeps a started robot from being read
     "ros.mesh": 4_300,
     "ros.nodes": 66_600,  # poses by other names; ends of goals in C++ and with other statements; the poses of transforms that code sends; the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions; fields of transforms of C++ read once

@@ -42,10 +42,12 @@ from grader.ros.workspace.rules.names import (
     Use,
     corrections,
     cost_of_guess,
+    warning,
 )
 from grader.ros.workspace.rules.parameter_rules import type_in_words
 from grader.ros.workspace.rules.renamed_nodes import key_of_program_name
 from grader.ros.workspace.rules.rule_table import (
+    DEFINED,
     FILTER_SIZE,
     PARAMETER_FILE,
     PARAMETER_KEY,
@@ -431,10 +433,11 @@ def _given(
 
 def _parameter_uses(
     workspace: Workspace, node: StartedNode, values: Mapping[str, ParameterValue], said: str
-) -> Iterator[Use]:
+) -> Iterator[Use | Mismatch]:
     """Yield the names of values that are for a node alone.
 
     What a file gives to every node, or to another of the same name, need not be declared by it.
+    What another launch gives to a program of the same name that declares it does no harm.
     """
     owner = f"{node.package}/{node.executable}"
     shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
@@ -449,8 +452,17 @@ def _parameter_uses(
     for name, value in values.items():
         if name in read - declared:
             continue
-        if value.location not in shared and not name.startswith("qos_overrides."):
-            yield Use("parameter", name, value.named_at or value.location, said, owner)
+        if value.location in shared or name.startswith("qos_overrides."):
+            continue
+        other = _other_declaring(workspace, node, name)
+        if other is None or own_node is None or name in declared:
+            yield Use("parameter", name, value.name_location, said, owner)
+        elif None not in declared and not _may_declare_more(workspace, node, own_node):
+            message = (
+                f"the program {node.executable!r} has no parameter {name!r}; {said} of {other!r} "
+                "has it"
+            )
+            yield warning(DEFINED["parameter"], message, value.name_location)._replace(word=name)
 
 
 def _may_declare_more(workspace: Workspace, node: StartedNode, own_node: NodeFacts) -> bool:
@@ -475,6 +487,17 @@ def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Locat
             may_be_declared = None in declared or name in declared
             if may_be_declared and value.location.path in workspace.installed.yaml:
                 yield value.location
+
+
+def _other_declaring(workspace: Workspace, node: StartedNode, name: str) -> str | None:
+    """Return another program that is started as a node of the same name, and has a parameter."""
+    for given in workspace.parameters.owners.get(workspace.code.name_of(node) or "", ()):
+        facts = workspace.code.own_node(given.node)
+        if facts is None or given.node.executable == node.executable or name not in given.values:
+            continue
+        if any(each.name == name and each.is_declared for each in facts.parameters):
+            return given.node.executable
+    return None
 
 
 def _declared_names(workspace: Workspace, node: StartedNode) -> set[str | None]:
