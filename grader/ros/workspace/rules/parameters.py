@@ -71,7 +71,8 @@ _WITHOUT_LINKS = {_MACRO, f"{_XACRO}property", f"{_XACRO}arg", "material"}
 _WILDCARD = re.compile(r"[*?\[]")
 _SEPARATORS = re.compile(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
-_LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
+_SOURCES = "observation_sources"
+_LISTS = ("plugins", "navigators", _SOURCES, "filters", "controller_names")
 _NOT_LISTS = ("plugin_lib_names",)
 
 
@@ -692,8 +693,10 @@ def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Ite
         for key, inner in node.value.items():
             waiting.append((f"{above}/{key.strip('/')}", inner))
         for fact in _lists_of_plugins(tree.source.path, node.value):
-            if not isinstance(fact, Use) or (above, fact.name) not in elsewhere:
+            if not isinstance(fact, Use):
                 yield fact
+            elif (above, fact.name) not in elsewhere:
+                yield _section_one_level_lower(fact, node.value) or fact
 
 
 def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[Definition | Use]:
@@ -714,6 +717,28 @@ def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[De
             yield use._replace(taken=frozenset(names))
 
 
+def _section_one_level_lower(use: Use, mapping: Mapping[str, YamlNode]) -> Mismatch | None:
+    """Return that the section of a plugin is in one that is beside its list; None for another."""
+    if use.optional or use.name in mapping:
+        return None
+    holders: list[str] = []
+    for name, beside in mapping.items():
+        inner = beside.get(use.name)
+        if inner is not None and isinstance(inner.value, dict):
+            holders.append(name)
+    if len(holders) != 1:
+        return None
+    [holder] = holders
+    message = f"the section {use.name!r} is in {holder!r}, but belongs beside {use.said}"
+    is_layer = holder.endswith("layer") or mapping[holder].get("plugin") is not None
+    if use.said == _SOURCES and is_layer:
+        message = (
+            f"{_SOURCES} belongs in {holder!r}, where {use.name!r} is; the costmap does not read "
+            "it here"
+        )
+    return Mismatch(DEFINED["plugin section"], message, use.location, word=use.name)
+
+
 def _is_default(key: str, names: Sequence[str]) -> bool:
     """Return whether a list is the default of a parameter, whose plugins need no sections.
 
@@ -730,7 +755,7 @@ def _is_default(key: str, names: Sequence[str]) -> bool:
 def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:
     """Yield the names of sections in a list of plugins; a name with a separator is a class."""
     texts = [(item.text or "", item.location) for item in node.items]
-    if node.text is not None and key == "observation_sources":
+    if node.text is not None and key == _SOURCES:
         texts = [(word, node.location) for word in node.text.split()]
     for text, at in texts:
         if text and "/" not in text and "::" not in text:
