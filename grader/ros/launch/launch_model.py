@@ -165,13 +165,19 @@ class ParameterValue(NamedTuple):
     """The value that a parameter is given, and where it is written.
 
     The value is a scalar or a list of them or Unknown. If its name is in a file, its place is there
-    too.
+    too; of a call in a launch file, which may be elsewhere, also that of the parameters.
     """
 
     value: Any
     location: Location
     named_at: Location | None = None
     text: str = ""  # of a dict, which rcl reads as the value
+    given_at: Location | None = None
+
+    @property
+    def name_location(self) -> Location:
+        """Where its name is written, as far as that is known."""
+        return self.named_at or self.given_at or self.location
 
     @property
     def remark(self) -> str:

@@ -365,14 +365,17 @@ def _parameter_values(
     evaluated: Mapping[str, Any], value: Value, at: Position, location: Location
 ) -> dict[str, ParameterValue]:
     """Return what a value in a table gives by the names of parameters, with its place."""
+    given_at = None
     if isinstance(value, Call) and location.line != value.at.line:
+        given_at = location
         location = location._replace(line=value.at.line, column=value.at.column)
     values = {}
     for name, given in evaluated.items():
         written = _replace_stand_ins(given, at)
         read = _as_file_has(written)
         is_other = isinstance(written, str) and not isinstance(read, str)
-        values[name] = ParameterValue(read, location, text=written if is_other else "")
+        text = written if is_other else ""
+        values[name] = ParameterValue(read, location, text=text, given_at=given_at)
     return values
 
 

@@ -160,7 +160,7 @@ class GraphNames:
             given = self._workspace.parameters.read_given(package, node, name)
             for parameter, value in given.values.items():
                 if parameter in declared:
-                    at = value.named_at or value.location
+                    at = value.name_location
                     yield from self._parameter(at, parameter, f"{node.package}/{node.executable}")
 
     def _parameter(self, at: Location, name: str, owner: str) -> Iterator[WrittenName]:

@@ -464,7 +464,7 @@ class _NodeReader:
         """Return that there is no parameter of a name, or of the table that it is in."""
         if value.location in self._given.shared:
             return None
-        at = value.named_at or value.location
+        at = value.name_location
         if near_name is not None:
             return self._misspelt(name, at, near_name)
         table = next(
@@ -539,7 +539,7 @@ class _NodeReader:
                     continue
                 unread.pop(wrong, None)
                 value = self._values[wrong]
-                place = value.named_at or value.location
+                place = value.name_location
                 text = f"{message}; did you mean it by {wrong!r}?"
                 either = corrections(wrong.rpartition(".")[2], place, row.name.rpartition(".")[2])
                 mismatch = Mismatch(PARAMETER_REQUIRED, text, place, corrections=either)
@@ -571,7 +571,7 @@ class _OffSwitch(NamedTuple):
 
     def finding(self, given: GivenNode, name: str, value: ParameterValue) -> _RowFinding:
         """Return that a parameter has no effect."""
-        at = value.named_at or value.location
+        at = value.name_location
         message = f"{given.said} does not use {given.shown(name)}{self.words}"
         mismatch = warning(PARAMETER_EFFECT, message, at)
         return _RowFinding(name, mismatch)

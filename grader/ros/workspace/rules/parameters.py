@@ -42,10 +42,12 @@ from grader.ros.workspace.rules.names import (
     Use,
     corrections,
     cost_of_guess,
+    warning,
 )
 from grader.ros.workspace.rules.parameter_rules import type_in_words
 from grader.ros.workspace.rules.renamed_nodes import key_of_program_name
 from grader.ros.workspace.rules.rule_table import (
+    DEFINED,
     FILTER_SIZE,
     PARAMETER_FILE,
     PARAMETER_KEY,
@@ -69,7 +71,8 @@ _WITHOUT_LINKS = {_MACRO, f"{_XACRO}property", f"{_XACRO}arg", "material"}
 _WILDCARD = re.compile(r"[*?\[]")
 _SEPARATORS = re.compile(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
-_LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
+_SOURCES = "observation_sources"
+_LISTS = ("plugins", "navigators", _SOURCES, "filters", "controller_names")
 _NOT_LISTS = ("plugin_lib_names",)
 
 
@@ -431,10 +434,11 @@ def _given(
 
 def _parameter_uses(
     workspace: Workspace, node: StartedNode, values: Mapping[str, ParameterValue], said: str
-) -> Iterator[Use]:
+) -> Iterator[Use | Mismatch]:
     """Yield the names of values that are for a node alone.
 
     What a file gives to every node, or to another of the same name, need not be declared by it.
+    What another launch gives to a program of the same name that declares it does no harm.
     """
     owner = f"{node.package}/{node.executable}"
     shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
@@ -449,8 +453,17 @@ def _parameter_uses(
     for name, value in values.items():
         if name in read - declared:
             continue
-        if value.location not in shared and not name.startswith("qos_overrides."):
-            yield Use("parameter", name, value.named_at or value.location, said, owner)
+        if value.location in shared or name.startswith("qos_overrides."):
+            continue
+        other = _other_declaring(workspace, node, name)
+        if other is None or own_node is None or name in declared:
+            yield Use("parameter", name, value.name_location, said, owner)
+        elif None not in declared and not _may_declare_more(workspace, node, own_node):
+            message = (
+                f"the program {node.executable!r} has no parameter {name!r}; {said} of {other!r} "
+                "has it"
+            )
+            yield warning(DEFINED["parameter"], message, value.name_location)._replace(word=name)
 
 
 def _may_declare_more(workspace: Workspace, node: StartedNode, own_node: NodeFacts) -> bool:
@@ -475,6 +488,17 @@ def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Locat
             may_be_declared = None in declared or name in declared
             if may_be_declared and value.location.path in workspace.installed.yaml:
                 yield value.location
+
+
+def _other_declaring(workspace: Workspace, node: StartedNode, name: str) -> str | None:
+    """Return another program that is started as a node of the same name, and has a parameter."""
+    for given in workspace.parameters.owners.get(workspace.code.name_of(node) or "", ()):
+        facts = workspace.code.own_node(given.node)
+        if facts is None or given.node.executable == node.executable or name not in given.values:
+            continue
+        if any(each.name == name and each.is_declared for each in facts.parameters):
+            return given.node.executable
+    return None
 
 
 def _declared_names(workspace: Workspace, node: StartedNode) -> set[str | None]:
@@ -669,8 +693,10 @@ def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Ite
         for key, inner in node.value.items():
             waiting.append((f"{above}/{key.strip('/')}", inner))
         for fact in _lists_of_plugins(tree.source.path, node.value):
-            if not isinstance(fact, Use) or (above, fact.name) not in elsewhere:
+            if not isinstance(fact, Use):
                 yield fact
+            elif (above, fact.name) not in elsewhere:
+                yield _section_one_level_lower(fact, node.value) or fact
 
 
 def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[Definition | Use]:
@@ -691,6 +717,28 @@ def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[De
             yield use._replace(taken=frozenset(names))
 
 
+def _section_one_level_lower(use: Use, mapping: Mapping[str, YamlNode]) -> Mismatch | None:
+    """Return that the section of a plugin is in one that is beside its list; None for another."""
+    if use.optional or use.name in mapping:
+        return None
+    holders: list[str] = []
+    for name, beside in mapping.items():
+        inner = beside.get(use.name)
+        if inner is not None and isinstance(inner.value, dict):
+            holders.append(name)
+    if len(holders) != 1:
+        return None
+    [holder] = holders
+    message = f"the section {use.name!r} is in {holder!r}, but belongs beside {use.said}"
+    is_layer = holder.endswith("layer") or mapping[holder].get("plugin") is not None
+    if use.said == _SOURCES and is_layer:
+        message = (
+            f"{_SOURCES} belongs in {holder!r}, where {use.name!r} is; the costmap does not read "
+            "it here"
+        )
+    return Mismatch(DEFINED["plugin section"], message, use.location, word=use.name)
+
+
 def _is_default(key: str, names: Sequence[str]) -> bool:
     """Return whether a list is the default of a parameter, whose plugins need no sections.
 
@@ -707,7 +755,7 @@ def _is_default(key: str, names: Sequence[str]) -> bool:
 def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:
     """Yield the names of sections in a list of plugins; a name with a separator is a class."""
     texts = [(item.text or "", item.location) for item in node.items]
-    if node.text is not None and key == "observation_sources":
+    if node.text is not None and key == _SOURCES:
         texts = [(word, node.location) for word in node.text.split()]
     for text, at in texts:
         if text and "/" not in text and "::" not in text:
