@@ -305,7 +305,8 @@ class TomlRowReader:
         for key, value in row.items():
             if key not in table.keys:
                 hint = self.guess(key, table.keys) or f"; it has: {', '.join(table.keys)}"
-                self.complain((*where, key), f"a {table.name} has no key {key!r}{hint}")
+                article = "an" if table.name[0] in "aeiou" else "a"
+                self.complain((*where, key), f"{article} {table.name} has no key {key!r}{hint}")
                 continue
             try:
                 parsed[key] = table.keys[key].parse(value)
