@@ -279,7 +279,7 @@ DEFAULTS = KeyTable(
     },
 )
 EVIDENCE = KeyTable(
-    "evidence entry",
+    "evidence",
     {
         "id": described(_ID, "The id of this piece of evidence, one word."),
         "part": described(_TEXT, "The id of the part that it belongs to."),
