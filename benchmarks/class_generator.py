@@ -1043,11 +1043,15 @@ def main() -> None:
     given = parser.parse_args()
     made = make_class(given.folder, given.count, given.seed, given.kind, given.layout)
     if not (given.expected or given.roster or given.lms):
-        print(sum(1 for _ in made), "submissions")
+        has_submitted = [bool(one.paths) for one in made]
+        print(f"{len(has_submitted)} students, {sum(has_submitted)} with a submission")
         return
     written = list(made)
     write_beside(written, given.count, given.layout, given.expected, given.roster, given.lms)
-    print(len(written), "submissions")
+    unlisted = len(written) - given.count
+    extra = f" ({unlisted} not on the roster)" if unlisted else ""
+    submitted = sum(bool(one.paths) for one in written)
+    print(f"{len(written)} students{extra}, {submitted} with a submission")
 
 
 def write_beside(

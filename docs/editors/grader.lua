@@ -10,6 +10,7 @@ vim.api.nvim_create_autocmd({ "BufRead", "BufNewFile" }, {
   pattern = { "*.urdf", "*.xacro", "*.srdf", "*.sdf", "*.world", "*.launch" },
   command = "set filetype=xml",
 })
+vim.api.nvim_create_autocmd({ "BufRead", "BufNewFile" }, { pattern = "*.rviz", command = "set filetype=yaml" })
 
 if vim.lsp.config then -- Neovim 0.11
   vim.lsp.config("grader", {

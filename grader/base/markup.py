@@ -15,6 +15,7 @@ _TOKEN = re.compile(
 )
 # A word of the value of an attribute, in which an expression of xacro is a part.
 WORD_OF_VALUE = re.compile(r"(?:\$\{[^{}]*\}|\$\((?:[^()]|\([^()]*\))*+\)|[^\s$]|\$)+")
+_INDENTED = re.compile(r"\n([ \t]++)<(?![!?/])")  # a tag; the first one is one step from its parent
 _STEP = "   "  # of indentation, where the file shows none
 
 
@@ -127,4 +128,5 @@ def child_indentation(text: str, start: int) -> str:
         child_indent = indentation(text, token.start())
         if len(child_indent) > len(own_indentation):
             return child_indent
-    return own_indentation + ("\t" if own_indentation.startswith("\t") else _STEP)
+    step = _INDENTED.search(text)
+    return own_indentation + (step[1] if step is not None else _STEP)

@@ -250,6 +250,12 @@ def _key_names(tokens: list[str]) -> list[str]:
     ]
 
 
+_NOUNS = {  # tables that are not called by their names
+    "adjustment": "an adjustment",
+    "evidence": "an evidence entry",
+}
+
+
 class KeyTable(NamedTuple):
     """A table of a TOML file: what one is called, and its keys."""
 
@@ -306,7 +312,8 @@ class TomlRowReader:
         for key, value in row.items():
             if key not in table.keys:
                 hint = self.guess(key, table.keys) or f"; it has: {', '.join(table.keys)}"
-                self.complain((*where, key), f"a {table.name} has no key {key!r}{hint}")
+                noun = _NOUNS.get(table.name, f"a {table.name}")
+                self.complain((*where, key), f"{noun} has no key {key!r}{hint}")
                 continue
             try:
                 parsed[key] = table.keys[key].parse(value)

@@ -6,7 +6,7 @@ from functools import partial
 from typing import NamedTuple, Protocol
 
 from grader.base.errors import FileError, InputError
-from grader.base.text import size_text
+from grader.base.text import quoted_end, size_text
 from grader.files import limits
 from grader.files.limits import ignored_part
 
@@ -53,7 +53,7 @@ class IgnoredFile(NamedTuple):
     is_closed: bool = False
 
     def __str__(self) -> str:
-        return f"{self.path} {self.reason}"
+        return f"{quoted_end(self.path)} {self.reason}"
 
 
 class File(NamedTuple):

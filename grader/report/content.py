@@ -222,10 +222,14 @@ def hand_in_line(report: Report) -> str:
     """Return how many answers and pictures were searched in vain; empty if there are all."""
     missing = [result for result in report.results if is_not_found(result)]
     answers = sum(result.criterion.check.function is answered for result in missing)
-    pictures = len(missing) - answers + len(_pictures_to_add(report, missing))
-    counts = [counted(pictures, "picture")] if pictures else []
-    counts += [counted(answers, "answer")] if answers else []
-    return f"Also to hand in: {', '.join(counts)} (--verbose)" if counts else ""
+    pictures, without = len(missing) - answers, len(_pictures_to_add(report, missing))
+    counts = [counted(answers, "answer")] if answers else []
+    counts += [f"{counted(pictures, 'picture')} with points"] if pictures else []
+    if without and pictures:
+        counts.append(f"{without} without")
+    elif without:
+        counts.append(f"{counted(without, 'picture')} without points")
+    return f"Not found yet: {', '.join(counts)} (--verbose)" if counts else ""
 
 
 def found_line(pending: Sequence[Entry]) -> str:

@@ -450,8 +450,6 @@ def hint_text(entry: Entry, hint: Hint) -> str:
         result.criterion.id for result in entry.results if result.criterion.id not in hint.gains
     ]
     texts = [hint.message.removesuffix(".")]
-    if hint.certainty == "one of several" and hint.gains:
-        texts.append("Other edits are as good")
     if left and hint.gains:
         texts.append(f"Then check {enumerated(left, _MAX_CRITERIA)}")
     return sentence(". ".join(texts))

@@ -14,7 +14,7 @@ from grader.base.text import printable, sentence
 from grader.files.reading import sha256_of
 from grader.report.examples import explanation_of
 from grader.report.inspection import Inspection
-from grader.report.locations import archive_around, calls_text, location_text
+from grader.report.locations import archive_around, location_text, message_at
 
 _NUMBER_OF_LINE = r"\blines? \d+(?:(?:, | and )\d+)*|:\d+"
 DOCUMENTATION = "https://urdf-grader.github.io/urdf-grader/"
@@ -57,7 +57,7 @@ def finding_of_problem(problem: Problem) -> Finding:
     kind, where = problem.kind, problem.location
     page = f"{DOCUMENTATION}problems.html#{kind.code.lower()}"
     rule = FindingKind(kind.code, kind.title, explanation_of(kind), page, problem.rule)
-    message = printable(problem.message) + calls_text(where)
+    message = message_at(printable(problem.message), where)
     return Finding(
         rule, kind.severity, message, where, problem.related, problem.fixes, problem.cause
     )

@@ -69,6 +69,12 @@ def calls_text(where: Location) -> str:
     return "".join(f", {call}" for call in reversed(calls[-_MAX_CALLS:]))
 
 
+def message_at(message: str, where: Location) -> str:
+    """Return a message after the macro calls of xacro that led to its location."""
+    calls = calls_text(where).removeprefix(", ")
+    return f"{calls}: {message}" if calls else message
+
+
 def location_text(where: Location) -> str:
     """Return a location as editors take it, path:line:column.
 

@@ -10,7 +10,7 @@ from grader.lab.rubric.criterion import Criterion
 from grader.report.content import entries, other_problems, report_sections
 from grader.report.criteria import Entry, is_absent, is_failure, points_of
 from grader.report.findings import DOCUMENTATION, Finding, FindingKind, finding_of_problem, place_of
-from grader.report.locations import calls_text
+from grader.report.locations import message_at
 
 
 def findings_in_report(report: Report) -> list[Finding]:
@@ -64,7 +64,7 @@ def _mistake(entry: Entry, report: Report) -> Mistake:
     for result in entry.results:
         at, problem = result.outcome.location, result.outcome.problem or result.outcome.message
         if at is not None:
-            reported.add((printable(problem) + calls_text(at), at))
+            reported.add((message_at(printable(problem), at), at))
     return Mistake(
         _criterion_finding(entry, report),
         tuple(besides),
@@ -84,7 +84,7 @@ def _criterion_finding(entry: Entry, report: Report) -> Finding:
     elif not is_failure(result):
         severity = "warning"
     where = entry.location or result.outcome.location or Location(_main_file(result, report), 1, 1)
-    message = " ".join(entry.texts("finding", "comment", "hint")) + calls_text(where)
+    message = message_at(" ".join(entry.texts("finding", "comment", "hint")), where)
     return Finding(_criterion_rule(result.criterion), severity, message, where)
 
 

@@ -161,7 +161,7 @@ def diff(
 
     Compares the current grades with the newest run that had other ones, or two gradebooks. A grade
     changes with the submission, the rubric, the grader, marks, the roster or the deadline. It is
-    provisional while something is open. Runs count from 1.
+    provisional while something needs manual grading. Runs count from 1.
 
     Examples:
 

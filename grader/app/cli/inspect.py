@@ -14,7 +14,7 @@ from grader.ros.api import Release
 
 _PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
 _BASELINE = "Do not show the findings of this file, which --write-baseline wrote."
-_WRITE_BASELINE = "Write the findings, to be shown no more with --baseline."
+_WRITE_BASELINE = "Write the findings, to be shown no more with --baseline; exits 0."
 _LOG = "Explain this log, or a folder of logs; - for a pipe, which is passed on."
 _ROBOT = "Show this robot of several whole: its name, or the end of its path."
 _JOINT = "Position of a joint, in radians or metres; repeatable."

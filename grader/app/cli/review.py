@@ -21,7 +21,7 @@ from grader.base.errors import InputError
 
 _CRITERION = "The id of the criterion; grade: the final mark; deadline: the student's own."
 _POINTS = "The points; with grade also excused; with deadline a time; - withdraws a mark."
-_SHEET = "Write the open items into a new CSV file instead."
+_SHEET = "Write what needs manual grading into a new CSV file instead."
 
 
 def mark(

@@ -128,7 +128,7 @@ def _show_and_save(
 ) -> bool:
     """Show and save an inspection without what is known of a baseline.
 
-    Return whether nothing else is certainly wrong.
+    Return whether nothing else is certainly wrong; what is written to a baseline counts as known.
     """
     verbose = request.verbose
     texts = {}
@@ -141,7 +141,7 @@ def _show_and_save(
     robots = [Path(request.path, robot.path) for robot in inspection.robots]
     show(render_inspection(inspection, request.output_format, screen, verbose=verbose))
     save_texts(texts, request.path, (*robots, *inspection.besides))
-    return inspection.is_passed
+    return inspection.is_passed or request.write_baseline is not None
 
 
 def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:

@@ -181,7 +181,9 @@ def _class_grade(
     Points that need manual grading count as zero with --pending-as-zero.
     """
     total = grade.total if _is_open_zero(grade, request) else grade.published
-    comment = _comment(book, grade, total) if has_comment and total is not None else ""
+    comment = ""
+    if has_comment and total is not None:
+        comment = _comment(book, grade, total, has_open_zeros=_is_open_zero(grade, request))
     return PublishedGrade(grade.student, total, grade.is_excused, grade.why_open, comment)
 
 
@@ -190,11 +192,12 @@ def _is_open_zero(grade: StudentGrade, request: ExportRequest) -> bool:
     return request.pending_as_zero and grade.obstacle is Reason.PENDING
 
 
-def _comment(book: Gradebook, grade: StudentGrade, total: Decimal) -> str:
+def _comment(book: Gradebook, grade: StudentGrade, total: Decimal, *, has_open_zeros: bool) -> str:
+    """Return what a student reads of a grade in the LMS."""
     from grader.classroom.reports import class_reports
 
     report = class_reports.report_of(book, grade, has_hints=False)
-    lost = () if grade.has_final else lost_points(report.results)
+    lost = () if grade.has_final else lost_points(report.results, has_open_zeros=has_open_zeros)
     exported = format_points(total.quantize(Decimal("0.01"), ROUND_FLOOR))
     opening = f"Grade: {exported} of {format_points(book.maximum)} points."
     return comment_html(opening, [*lost, *class_reports.notes_of(grade, report)])

@@ -211,7 +211,7 @@ def _reasons_beside(first: RunGrade, last: RunGrade, before: Run, after: Run) ->
     if None in changed:
         yield "a mark was withdrawn"
     if changed - {EXCUSED, None}:
-        yield "marked by a person"
+        yield "manual mark"
     if first.deadline != last.deadline:
         yield "the student's deadline changed"
     elif first.days_late != last.days_late and before.due != after.due:

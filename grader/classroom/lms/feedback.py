@@ -28,6 +28,7 @@ from grader.classroom.tables import protected, spelt_out
 from grader.files.reading import sha256_of
 from grader.files.zip_writing import tar_gz_of, zip_of
 from grader.lab.grading.report import Result
+from grader.report.criteria import is_manual
 
 MAX_LINES = 40
 _MAX_LINE = 700  # characters: with all lines less than a cell of Excel has
@@ -41,10 +42,11 @@ _NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and
 _ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
 
-def lost_points(results: Iterable[Result]) -> Iterator[str]:
+def lost_points(results: Iterable[Result], *, has_open_zeros: bool = False) -> Iterator[str]:
     """Yield a line for each criterion below its maximum.
 
-    Also for one with a comment, or with points that no check decides.
+    Also for one with a comment, or with points that no check decides; with `has_open_zeros` these
+    count as 0.
     """
     for result in results:
         mark, criterion = result.manual_mark, result.criterion
@@ -57,13 +59,24 @@ def lost_points(results: Iterable[Result]) -> Iterator[str]:
                 or result.is_adjusted
                 or (comment and result.outcome.status == "passed")
             )
-            points = "–" if result.is_open else format_points(result.points)
-            extra = " (extra credit)" if criterion.bonus else ""
-            about = f"{criterion.title}{extra}: {points} of {format_points(criterion.points)}"
+            about = f"{_points_text(result, has_open_zeros=has_open_zeros)}: {criterion.title}"
             message = "" if is_hidden else result.outcome.message
             if message:
                 about += f": {message}"
             yield ". ".join(text for text in (about, result.why_given, comment) if text)
+
+
+def _points_text(result: Result, *, has_open_zeros: bool) -> str:
+    """Return the points of a criterion, before its title."""
+    points = "–" if result.is_open else format_points(result.points)
+    text = f"{points} of {format_points(result.criterion.points)}"
+    if result.criterion.bonus:
+        text += " (extra credit)"
+    if result.is_open and has_open_zeros:
+        text += " (counted as 0 for now)"
+    if result.outcome.status in ("failed", "skipped") and not is_manual(result):
+        text += ", passes when"  # the title is no fact
+    return text
 
 
 def comment_html(opening: str, lines: Sequence[str]) -> str:

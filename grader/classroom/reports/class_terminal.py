@@ -8,6 +8,7 @@ Text of submissions is never interpreted as markup or control codes.
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
+from operator import itemgetter
 from typing import NamedTuple
 
 from rich.cells import cell_len
@@ -33,7 +34,7 @@ from grader.classroom.gradebook.statistics import (
     CriterionMistakes,
     summary,
 )
-from grader.classroom.gradebook.student_grade import Reason, StudentGrade
+from grader.classroom.gradebook.student_grade import Reason, StudentGrade, pending_words
 from grader.classroom.reports.class_words import (
     EQUAL_NOTE,
     SHARE_NOTE,
@@ -56,6 +57,12 @@ _MAX_COSTS = 3  # criteria named in a row
 _BAR_WIDTH = 40
 _MAX_MISTAKES, _MAX_CAUSES, _MAX_GROUPS = 10, 3, 20
 _MAX_STEPS = 5  # criteria of a student that changed
+_TITLES = {
+    "carried": "not\ndeducted",
+    "marked": "manual\nmark",
+    "pending": "manual\ngrading",
+    "share": "mean\nearned",
+}
 
 
 class _Row(NamedTuple):
@@ -86,7 +93,8 @@ class ClassTable:
         )
         self.ending = ""  # the last line
         self._totals = Counter[Decimal]()
-        self._concerns: defaultdict[Reason, list[tuple[str, str]]] = defaultdict(list)
+        self._names = Counter[str]()
+        self._concerns: defaultdict[Reason, list[tuple[str, str, str]]] = defaultdict(list)
 
     def add(self, grade: StudentGrade) -> None:
         """Add the next student."""
@@ -105,8 +113,13 @@ class ClassTable:
             self._keep_first()
         if grade.total is not None and grade.is_counted:
             self._totals[grade.total] += 1
+        self._names[name] += 1
         for reason, detail in grade.concerns.items():
-            self._concerns[reason].append((name, detail))
+            self._concerns[reason].append((name, grade.student.key, detail))
+
+    def _label(self, name: str, key: str) -> str:
+        """Return the name of a student, with the key if another student has this name."""
+        return named(key, name) if self._names[name] > 1 else name
 
     def _keep_first(self) -> None:
         self.rows.sort()
@@ -130,14 +143,15 @@ class ClassTable:
         """
         names, grades, late, open_points = [], [], [], []
         for row in self.rows:
-            names.append(row.name)
+            names.append(self._label(row.name, row.order[-1]))
             grades.append(row.grade)
             late.append(row.late)
             open_points.append(row.why_open)
-        columns = {"student": names, GRADE: grades, "late": late, "lost": [], "open": open_points}
+        columns = {"student": names, GRADE: grades, "late": late, "lost": []}
+        columns[_TITLES["pending"]] = open_points
         for title, cells in columns.items():
             if any(cells):
-                width -= _GAP + max(map(cell_len, [title, *cells]))
+                width -= _GAP + max(map(cell_len, [*title.splitlines(), *cells]))
         columns["lost"] = [_costs(row.losses, width - _GAP) for row in self.rows]
         return {title: cells for title, cells in columns.items() if any(cells)}
 
@@ -157,8 +171,9 @@ class ClassTable:
             page.inset(f"{words} ({counted(figures.students, 'student')})", indent=0)
         for reason in Reason:
             if reason in self._concerns:
-                line = _attention_line(reason, self._concerns[reason], verbose=self.verbose)
-                page.inset(printable(line))
+                concerned = self._concerns[reason]
+                who = [(self._label(name, key), detail) for name, key, detail in concerned]
+                _show_attention(reason, who, page, verbose=self.verbose)
         if self.ending:
             page.leave_row()
             # not wrapped: its path and command are copied
@@ -201,11 +216,11 @@ def render_class(figures: ClassStatistics, console: Console, *, verbose: bool = 
         students = people_text([labels[key] for key in work.students])
         equal.append(f"{students}: {work.equal}")
     _show_lines("Equal work", equal, page, note=EQUAL_NOTE)
-    attention = []
+    if figures.attention:
+        page.title("Needs attention")
     for reason, students_and_details in figures.attention.items():
         who = [(labels[key], detail) for key, detail in students_and_details]
-        attention.append(_attention_line(reason, who, verbose=verbose))
-    _show_lines("Needs attention", attention, page)
+        _show_attention(reason, who, page, verbose=verbose)
     page.print()
 
 
@@ -238,13 +253,24 @@ def _show_lines(title: str, lines: Sequence[str], page: Page, *, note: str = "")
         page.inset(printable(line), indent=4, head=Text(" " * INDENT))
 
 
-def _attention_line(
-    reason: Reason, who: Sequence[tuple[str, str]], *, verbose: bool = False
-) -> str:
-    """Return the students who need attention for one reason, each with a detail."""
-    names = [f"{name} ({detail})" if detail else name for name, detail in who]
-    shown = people_text(names, len(who) if verbose else MAX_PEOPLE)
-    return f"{reason[:1].upper()}{reason[1:]} ({len(who)}): {shown}"
+def _show_attention(
+    reason: Reason, who: Sequence[tuple[str, str]], page: Page, *, verbose: bool
+) -> None:
+    """Print who needs attention for a reason: those with an equal detail in one line."""
+    most = len(who) if verbose else MAX_PEOPLE
+    head = f"{reason[:1].upper()}{reason[1:]} ({len(who)})"
+    start = Text(" " * INDENT)
+    if not any(detail for _, detail in who):
+        names = people_text([name for name, _ in who], most)
+        page.inset(printable(f"{head}: {names}"), indent=2 * INDENT, head=start)
+        return
+    page.inset(printable(f"{head}:"), indent=2 * INDENT, head=start)
+    lines = []
+    for detail, alike_students in alike(who, itemgetter(1)):
+        names = people_text([name for name, _ in alike_students], most)
+        lines.append(f"{names}: {detail}" if detail else names)
+    for line in first_lines(lines, most):
+        page.inset(printable(line), indent=3 * INDENT, head=Text(" " * 2 * INDENT))
 
 
 def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
@@ -256,8 +282,7 @@ def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
     table.add_column("criterion", overflow="fold")
     for name in ("points", *columns, "share"):
-        title = "not deducted" if name == "carried" else name
-        table.add_column(title, justify="right", no_wrap=name != "carried")
+        table.add_column(_TITLES.get(name, name), justify="right", no_wrap=True)
     for row in rows:
         name = row.criterion.id
         if row.criterion.bonus:
@@ -308,9 +333,9 @@ def _changed_grade(change: Change) -> Iterator[str]:
         change.before, change.after, (_without_points(old), _without_points(new))
     )
     if new.total is not None and new.pending:
-        grade += f", provisional ({counted_points(Decimal(new.pending))} open)"
+        grade += f"; {pending_words(Decimal(new.pending))}"
     elif new.total is not None and why_open(new):
-        grade += f", provisional ({why_open(new)})"
+        grade += f"; {why_open(new)}"
     elif new.total is not None and old.total is not None and why_open(old):
         grade += ", now final"
     yield grade

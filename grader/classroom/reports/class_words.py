@@ -16,7 +16,7 @@ EQUAL_NOTE = (
     "is no verdict: students who"
     " follow the handout and make the same mistake have the same robot."
 )
-SHARE_NOTE = "Share: the mean share of the points that students earned."
+SHARE_NOTE = "Mean earned: the mean of what students earned, of the points of the criterion."
 
 
 def family_name_order(name: str, key: str) -> tuple[str, str, str]:

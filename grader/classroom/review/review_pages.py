@@ -200,7 +200,7 @@ def end_page(marked: int, left: int, place: Mapping[str, Any], gradebook: str, l
         command += " --into EXPORTED.csv --output upload.csv"
     values = {
         **place,
-        "title": f"{counted(left, 'mark')} left" if left else "Manual grading complete",
+        "title": f"{counted(left, 'mark')} still needed" if left else "Manual grading complete",
         "summary": f"{counted(marked, 'mark')} given in this review.",
         "left": left,
         "is_filtered": any(chosen not in ("", UNMARKED) for *_, chosen in place["filters"]),

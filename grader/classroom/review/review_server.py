@@ -221,4 +221,5 @@ def review_in_browser(
         with shown_until_interrupted(address, file, terminal, ending, opens=opens):
             server.serve_forever()
     write_grades(Gradebook(session.folder))
-    return f"{len(session.own)} marked, {session.left} left\n"
+    need = "needs" if session.left == 1 else "need"
+    return f"{len(session.own)} marked, {session.left} still {need} manual grading\n"

@@ -33,6 +33,7 @@ from grader.classroom.gradebook.review_items import (
     ReviewStudent,
     review_items,
 )
+from grader.classroom.gradebook.student_grade import pending_words
 from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.marks.gradebook_folder import CLASS_FILE
 from grader.classroom.marks.marks import Key, Mark, append_marks, mark_file, mark_in
@@ -207,7 +208,7 @@ class ReviewSession:
             return ""
         points = f"{format_points(grade.total)} of {counted_points(grade.report.max_score)} so far"
         if grade.pending:
-            return f"{points}; {format_points(grade.pending)} left to grade"
+            return f"{points}; {pending_words(grade.pending)}"
         return points
 
     @property

@@ -337,6 +337,8 @@ def _rubric_text(
         checks.update(carried.check for carried in row.fact.carried)
     part, usual = (_ROBOT if of_robot else _PACKAGE), Counter(points).most_common(1)[0][0]
     lines = [*_head_lines(head), *_default_lines(part, usual, checks)]
+    if any(row.fact.carried for row in rows):
+        lines += ["", "# carried: not deducted if only these criteria caused the failure"]
     if of_robot:
         lines += _part_lines(_ROBOT, "The robot", "urdf")
     if of_package:

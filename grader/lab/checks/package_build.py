@@ -54,9 +54,9 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
         return failed(
             problem.message + more, problem.location, problem=problem.message, cause="refused"
         )
-    message = (
-        f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
-    )
+    message = f"the package is named {manifest.name!r}; it should be named {name!r}"
+    if fine:
+        message = f"the package is valid and named {name!r}"
     setup, registered = package.installation, package.registered
     if fine and setup is not None and registered and name not in registered:
         # ament_index finds a package by its marker. colcon adds one for the name in package.xml,

@@ -127,12 +127,12 @@ def _value_or_default(
     Raises MissingElement and NotDecided, as `value_of` does.
     """
     try:
-        return f"{node} gets {parameter} =", value_of(submission, node, parameter)
+        return f"{quoted(node)} gets {parameter} =", value_of(submission, node, parameter)
     except MissingElement:
         default = submission.default_value(node, parameter) if or_default else None
         if default is None:
             raise
-        return f"{node} uses the default {parameter} =", default
+        return f"{quoted(node)} uses the default {parameter} =", default
 
 
 def _measured_if_there(
@@ -179,13 +179,13 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
     )
     if unknown:
         raise NotDecided(
-            f"the parameters of {node} are not known: {unknown}",
+            f"the parameters of {quoted(node)} are not known: {unknown}",
             "parameters of a node are not known",
         )
     if values:
         places = enumerated([value.location.file_and_line for value in values])
         raise NotDecided(
-            f"{node} gets different values of {parameter}: {places}",
+            f"{quoted(node)} gets different values of {parameter}: {places}",
             "a parameter has several values",
         )
     if not given:

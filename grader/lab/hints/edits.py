@@ -60,6 +60,7 @@ class FoundHint(NamedTuple):
     words: str = ""  # that say what is missing, for which there is no edit
     # another edit that cannot be told apart: both are named, neither is made
     alternative: Proposal | None = None
+    equal: Proposal | None = None  # another edit that gains as much, which is only named
 
     @property
     def edits(self) -> Edits:

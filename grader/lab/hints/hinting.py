@@ -264,6 +264,10 @@ def message(
     `earlier` are criteria whose hints come first.
     """
     text = _clause(hint, level, submission)
+    if hint.equal is not None:
+        other = _clause(FoundHint(hint.equal, {}), level, submission)
+        if other != text:
+            text = f"{text}; as good is: {other}"
     if earlier:
         edits = "edits" if len(earlier) > 1 else "edit"
         return f"After the {edits} for {enumerated(earlier, MAX_IN_HINT)}, {text}."

@@ -38,6 +38,7 @@ _AROUND_TEXTS = " ,'\"\r\n"
 _MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
 _SETTING = re.compile(r"(?P<key>[^\W\d][\w -]{0,60}?)(?::[ ]+|=\")(?P<value>[^\s\"][^\n\"]*)")
 _MAX_VALUES = 4
+_MAX_BEFORE = 1_000  # characters in which the key around a value is searched
 _SUBSTITUTIONS = ("find-pkg-share", "var", "env", "command", "dirname")
 _SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]+")
 _SINGLE, _TYPOGRAPHIC = "‘’‚", re.compile("[‘’‚“”„]")
@@ -237,8 +238,17 @@ def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Iterato
         offset = start_of_text + len("".join(own_tokens[:first]))
         old, new = "".join(own_tokens[first:last]), "".join(right[start:end])
         edit = source.edit(offset, offset + len(old), new)
-        written = in_backticks([old.strip(_AROUND_TEXTS)])
+        written = in_backticks([_without_quotes(old)])
         yield change([edit], written or _missing_in_words(file, offset, new), what)
+
+
+def _without_quotes(text: str) -> str:
+    """Return a text without blanks, commas and quotes around it; a pair of quotes inside stays."""
+    text = text.strip(" ,\r\n")
+    for quote in ("'", '"'):
+        if text.startswith(quote) or text.count(quote) % 2:
+            text = text.strip(quote)
+    return text
 
 
 def _missing_in_words(file: PythonFile, offset: int, new: str) -> str:
@@ -273,7 +283,20 @@ def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
             continue
         for value in [*values][:_MAX_VALUES]:
             edit = source.edit(*setting.span("value"), value)
-            yield change([edit], f"the value of `{setting['key']}`", what)
+            around = _key_around(source, setting.start()) if setting["key"] == "Value" else ""
+            inside = f" of `{around}`" if around else ""
+            yield change([edit], f"the value of `{setting['key']}`{inside}", what)
+
+
+def _key_around(source: Source, offset: int) -> str:
+    """Return the key of YAML in whose mapping an offset is; empty if it is not near."""
+    lines = source.text[max(0, offset - _MAX_BEFORE) : offset].split("\n")
+    indent = len(lines[-1])
+    for line in reversed(lines[:-1]):
+        key = line.strip()
+        if key.endswith(":") and len(line) - len(line.lstrip()) < indent:
+            return key.removesuffix(":")
+    return ""
 
 
 def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:

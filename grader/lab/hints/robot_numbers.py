@@ -36,14 +36,22 @@ class _NumberMistake(NamedTuple):
 _LENGTHS, _ANGLES, _ANY = ("m",), ("rad", "rad or m"), ()
 _MISTAKES = (
     _NumberMistake(_ANY, 0.0, lambda value: -value, "the sign of {}"),
-    _NumberMistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians"),
+    _NumberMistake(_ANGLES, 6.3, radians, "the unit of {} is degrees; it should be radians"),
     _NumberMistake(
-        _LENGTHS, LARGE, lambda value: value / 1000, "the unit of {}: millimetres, not metres"
+        _LENGTHS,
+        LARGE,
+        lambda value: value / 1000,
+        "the unit of {} is millimetres; it should be metres",
     ),
     _NumberMistake(
-        _LENGTHS, LARGE, lambda value: value / 100, "the unit of {}: centimetres, not metres"
+        _LENGTHS,
+        LARGE,
+        lambda value: value / 100,
+        "the unit of {} is centimetres; it should be metres",
     ),
-    _NumberMistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1"),
+    _NumberMistake(
+        ("1",), 1.1, lambda value: value / 255, "the range of {} is 0..255; it should be 0..1"
+    ),
     _NumberMistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value"),
     _NumberMistake(_LENGTHS, 0.0, lambda value: value * 2, "{}: half of the correct value"),
 )

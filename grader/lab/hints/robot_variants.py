@@ -43,6 +43,8 @@ _SIDES = {
     "upper": "lower",
 }
 _WORD = re.compile(r"[^\W\d_]+")
+_EXCHANGED = "parent and child of {} are exchanged"
+_OTHER_END = {"parent": "child", "child": "parent"}
 _MAX_ONE_BY_ONE = 3  # values whose mistakes are named
 _WITH_NUMBERS = (
     "origin",
@@ -262,7 +264,7 @@ def exchanges(difference: RobotDifference) -> list[Piece]:
     pieces: list[Piece] = []
     for joint in reversed_joints(difference):
         edits = _exchange_ends(difference.draft, (joint, "parent"), (joint, "child"))
-        pieces.append(difference.piece(joint, "parent and child of a joint are exchanged", edits))
+        pieces.append(difference.piece(joint, _EXCHANGED, edits))
     if len(pieces) > 1:
         every_edit = dict.fromkeys(edit for piece in pieces for edit in piece.edits)
         cause = "parents and children of joints are exchanged"
@@ -378,8 +380,22 @@ def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -
     if len(changed) < 2:
         return
     if len(changed) == len(sets) <= _MAX_ONE_BY_ONE:
-        what = " and ".join(difference.piece_of_sets([change]).cause for change in changed.values())
+        what = _causes(difference, list(changed.values()))
     yield Piece(what, link, tuple(dict.fromkeys(sets)), (), STRUCTURE)
+
+
+def _causes(difference: RobotDifference, changes: Sequence[Set]) -> str:
+    """Return what is wrong with values; the ends of a joint that are exchanged are one mistake."""
+    ends = {(change.owner.getparent(), str(change.owner.tag)): change for change in changes}
+    exchanged, others = list[str](), list[str]()
+    for change in changes:
+        joint, role = change.owner.getparent(), str(change.owner.tag)
+        other = ends.get((joint, _OTHER_END.get(role, "")))
+        if other is None or change.value != other.owner.get("link"):
+            others.append(difference.piece_of_sets([change]).cause)
+        elif role == "parent" and joint is not None:
+            exchanged.append(difference.piece(joint, _EXCHANGED).cause)
+    return ", and ".join([*exchanged, *([" and ".join(others)] if others else [])])
 
 
 def whole_elements(difference: RobotDifference) -> Iterator[Piece]:

@@ -330,7 +330,7 @@ def _leave_out(groups: Sequence[Edits], is_enough: Callable[[Edits], bool]) -> t
     with suppress(_NoTrialsLeft):
         for group in reversed(groups):
             others = tuple(one for one in kept if one != group)
-            if others and is_enough(tuple(edit for one in others for edit in one)):
+            if is_enough(tuple(edit for one in others for edit in one)):
                 kept = others
     return kept
 
@@ -418,15 +418,18 @@ class HintSearch:
             self.found, self.results = [*self._slips], self.trials.results
 
     def _name_needed_hints(self) -> None:
-        """Drop from each late hint the earlier hints that it does not need."""
+        """Drop from each late hint the earlier hints without which it gives the points, too.
+
+        A criterion that is carried has them.
+        """
         corrected = tuple(edit for slip in self._slips for edit in slip.edits)
         for index, hint in enumerate(self.found):
 
             def still_gains(before: Edits, needed_hint: FoundHint = hint) -> bool:
-                gains, _ = self._gains(
+                _, after = self._gains(
                     (*corrected, *before), needed_hint.edits, self.trials.results
                 )
-                return needed_hint.gains.keys() <= gains.keys()
+                return all(name in after and not after[name].is_lost for name in needed_hint.gains)
 
             self.found[index] = hint._replace(after=_leave_out(hint.after, still_gains))
 
@@ -434,6 +437,8 @@ class HintSearch:
         """Return the edits of hints that a criterion without a hint of its own needs to pass."""
 
         def passes(edits: Edits) -> bool:
+            if not edits:
+                return False
             results = self.trials.graded(edits, [name])
             return name in results and not results[name].is_lost
 
@@ -535,7 +540,8 @@ class HintSearch:
         after: tuple[Edits, ...] = ()
         if proof.is_late:
             after = tuple(hint.edits for hint in self.found if hint not in self._slips)
-        self.found.append(FoundHint(proof.proposal, proof.gains, certainty, after))
+        other = equal.proposal if equal is not None else None
+        self.found.append(FoundHint(proof.proposal, proof.gains, certainty, after, equal=other))
         self.results = proof.results
         self._refused = set()
         return True

@@ -1,6 +1,7 @@
 """A graph on a terminal: the nodes in the order of the launch file, and what they connect to."""
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 
 from rich.console import Console
 from rich.text import Text
@@ -30,9 +31,12 @@ def graph_text(shown: ShownGraph, console: Console) -> None:
     """Print a graph."""
     page = Page(console, [])
     page.inset(_head(shown), indent=0)
-    for number, node in shown.nodes:
-        if not shown.node or node.label == shown.node:
-            _add_node(page, shown, number, node)
+    nodes = [place for place in shown.nodes if not shown.node or place[1].label == shown.node]
+    doubts = _repeated_doubts([node for _, node in nodes])
+    for doubt, name in doubts.items():
+        page.inset(f"{name}: {printable(doubt)}", "dim", 0)
+    for number, node in nodes:
+        _add_node(page, shown, number, node, doubts)
     if not shown.node:
         _add_manual(page, shown)
         _add_transforms(page, shown.graph.transforms)
@@ -59,7 +63,21 @@ def _head(shown: ShownGraph) -> Text:
     )
 
 
-def _add_node(page: Page, shown: ShownGraph, number: int, node: GraphNode) -> None:
+def _repeated_doubts(nodes: Sequence[GraphNode]) -> dict[str, str]:
+    """Return what stands at ends for each doubt that several of them have."""
+    counts = Counter(end.doubt for node in nodes for end in node.ends if end.doubt)
+    repeated = [doubt for doubt, count in counts.items() if count > 1]
+    if len(repeated) == 1:
+        return {repeated[0]: "not certain"}
+    return {
+        doubt: f"not certain, reason {number}" for number, doubt in enumerate(repeated, start=1)
+    }
+
+
+def _add_node(
+    page: Page, shown: ShownGraph, number: int, node: GraphNode, doubts: Mapping[str, str]
+) -> None:
+    """Add a node with its ends; `doubts` are explained above."""
     title = Text(printable(node.label), "bold")
     if node.name:
         title.append(f"  {printable(node.program)}", "")
@@ -80,7 +98,10 @@ def _add_node(page: Page, shown: ShownGraph, number: int, node: GraphNode) -> No
         if is_quiet and not partners and not findings:
             quiet.setdefault(_VERBS[end.kind], []).append(printable(end.name))
             continue
-        page.inset(_end_line(shown, node, end, partners), indent=_NESTED, head=Text(" " * INDENT))
+        line = _end_line(shown, end, partners, doubts.get(end.doubt, ""))
+        if end.location != node.location:
+            line.append(f"  {printable(end.location.file_and_line)}", "dim")
+        page.inset(line, indent=_NESTED, head=Text(" " * INDENT))
         _add_findings(page, findings)
     for verb, names in quiet.items():
         listed = enumerated(names, _MAX_LISTED)
@@ -90,11 +111,14 @@ def _add_node(page: Page, shown: ShownGraph, number: int, node: GraphNode) -> No
 
 def _end_line(
     shown: ShownGraph,
-    node: GraphNode,
     end: GraphEnd,
     partners: Sequence[tuple[GraphNode, Connection]],
+    doubt: str,
 ) -> Text:
-    """Return an end with its type and quality, and what is at the other end."""
+    """Return an end with its type and quality, and what is at the other end.
+
+    `doubt` stands for a reason that is explained above.
+    """
     line = Text(f"{_VERBS[end.kind]} ")
     line.append(printable(end.name), "bold" if not end.doubt else "")
     details = [printable(end.type) or "type not known", *_quality(end.qos)]
@@ -116,9 +140,7 @@ def _end_line(
         is_known = not (shown.unknown_nodes or shown.graph.unread)
         line.append(f"{arrow}nothing {'here' if is_known else 'that is known'}", "dim")
     if end.doubt:
-        line.append(f" (not certain: {printable(end.doubt)})", "dim")
-    if end.location != node.location:
-        line.append(f"  {printable(end.location.file_and_line)}", "dim")
+        line.append(f" ({doubt or f'not certain: {printable(end.doubt)}'})", "dim")
     return line
 
 

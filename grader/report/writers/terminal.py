@@ -190,7 +190,7 @@ def _show_mistakes(mistakes: Sequence[Entry], report: Report, page: Page) -> Non
         page.leave_row()
         blocks = _brief_blocks(entry)
         if are_many and number >= _MAX_HINTS:
-            blocks = _with_cut_hints(blocks, page.console.width - INDENT)
+            blocks = _with_cut_feedback(blocks, page.console.width - INDENT)
         _show_entry(entry, report, page, blocks)
     rest = mistakes[_MAX_WHOLE:]
     if rest:
@@ -203,11 +203,15 @@ def _show_mistakes(mistakes: Sequence[Entry], report: Report, page: Page) -> Non
 def _brief_blocks(entry: Entry) -> Iterator[Block]:
     """Yield the blocks of a short report.
 
-    What is expected only if needed, and nothing that head and hint say.
+    What is expected only if needed, and nothing that head and hint say. What names that do not
+    agree break stays.
     """
+    has_names = any(other.result.criterion.check.name == "names_agree" for other in entry.also)
     is_clear = entry.result.outcome.expected is not None or bool(entry.texts("hint", "feedback"))
     for part in entry.blocks:
         match part:
+            case Line("also") if has_names:
+                yield part
             case Diff() | Line("also" | "skipped"):
                 pass
             case Line("expected") if is_clear:
@@ -218,11 +222,11 @@ def _brief_blocks(entry: Entry) -> Iterator[Block]:
                 yield part
 
 
-def _with_cut_hints(blocks: Iterable[Block], width: int) -> Iterator[Block]:
-    """Yield blocks with hints of one line."""
+def _with_cut_feedback(blocks: Iterable[Block], width: int) -> Iterator[Block]:
+    """Yield blocks with feedback of one line; a hint stays whole."""
     for part in blocks:
         match part:
-            case Line("hint" | "feedback", text):
+            case Line("feedback", text):
                 yield part._replace(text=shorten(text, width, placeholder=" ..."))
             case _:
                 yield part

@@ -31,7 +31,7 @@ _MAX_PLACES = 2  # files that are named
 class StatedReleases(NamedTuple):
     """The releases that a workspace is for, and the files or the option that say so.
 
-    Names of any release are right if there are none.
+    Names of every release are accepted if there are none.
     """
 
     releases: tuple[Release, ...] = ()
@@ -41,7 +41,7 @@ class StatedReleases(NamedTuple):
     def words(self) -> str:
         """Return the releases and their places in words."""
         if not self.releases:
-            return "release: not stated; names of any release are right"
+            return "release: not stated; names of every release are accepted"
         places = enumerated(self.places, _MAX_PLACES)
         return f"release: {enumerated(self.releases, len(RELEASES), 'or')} ({places})"
 

@@ -44,14 +44,16 @@ def test_lost_points() -> None:
         Result(CRITERIA["essay"], asks, comment=ManualComment("see me", "Kim")),
     ]
     assert list(lost_points(found)) == [
-        "About loads: 0 of 3: it is off",
-        "About loads: 3 of 3. nice",
-        "About box: 1 of 2.5. nice try",
-        "About tall: 0 of 0.5: skipped because loads failed",
-        "About tall: 0.5 of 0.5: it is too low. No points lost for tall: it fails only because of box.",
-        "About essay: 0 of 4: skipped because loads failed",
-        "About essay: – of 4: a person has to mark it. see me",
+        "0 of 3, passes when: About loads: it is off",
+        "3 of 3: About loads. nice",
+        "1 of 2.5, passes when: About box. nice try",
+        "0 of 0.5, passes when: About tall: skipped because loads failed",
+        "0.5 of 0.5, passes when: About tall: it is too low. No points lost for tall: it fails only because of box.",
+        "0 of 4: About essay: skipped because loads failed",
+        "– of 4: About essay: a person has to mark it. see me",
     ]
+    zeros = [line for line in lost_points(found, has_open_zeros=True) if line.startswith("–")]
+    assert zeros == ["– of 4 (counted as 0 for now): About essay: a person has to mark it. see me"]
 
 
 def test_own_comments_are_recognised() -> None:
