@@ -20,6 +20,12 @@ from grader.lab.rubric.criterion import Late
 from grader.lab.rubric.rubric import Rubric
 
 _DAY = timedelta(days=1)
+# The time from which Moodle writes a smaller unit beside the first one, and that unit.
+_MOODLE_UNITS = (
+    (timedelta(days=365), _DAY),
+    (_DAY, timedelta(hours=1)),
+    (timedelta(hours=1), timedelta(minutes=1)),
+)
 _LAST = 999_999  # microsecond, of a deadline that is the end of a day or a minute
 _IN_MINUTES = re.compile(r"\S+[T ]\d\d(:?\d\d)?(Z|[+-].*)?")  # a time without seconds
 
@@ -29,13 +35,15 @@ class Lateness(NamedTuple):
 
     Days begun, the penalty in points (0 or less), and the reason in words.
 
-    If the LMS does not tell when it was submitted, the days are a guess.
+    If the LMS does not tell when it was submitted, the days are a guess, and no deadline of the
+    student can change them: they are not timed.
     """
 
     days: int = 0
     points: Decimal = Decimal(0)
     reason: str = ""
     is_guess: bool = False
+    is_timed: bool = False
 
 
 def lateness(
@@ -54,13 +62,16 @@ def lateness(
     if own_deadline:
         is_timed = times.submitted and times.days_late  # without a time no days can be counted
         days_late = None if is_timed else times.days_late
+        if days_late and times.measured_by:  # without the extension that Moodle does not know
+            days_late += times.extension_days
         times = times._replace(due=own_deadline, extension_days=0.0, days_late=days_late)
-    days, reason, is_guess = _days_late(times, policy, deadline)
+    late = _days_late(times, policy, deadline)
+    days = late.days
     if policy is None or not days:
-        return Lateness(days, Decimal(0), reason)
+        return late._replace(is_guess=False)
     floor = min(score, rubric.points * policy.floor_percent / 100)
     reduced = max(floor, score - rubric.points * policy.percent_per_day * days / 100)
-    return Lateness(days, reduced - score, reason, is_guess)
+    return late._replace(points=reduced - score)
 
 
 def read_time(text: str, where: str = "") -> datetime:
@@ -103,11 +114,16 @@ def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
     return shown
 
 
-def _days_late(
-    times: Student, policy: Late | None, deadline: datetime | None
-) -> tuple[int, str, bool]:
-    """Return the days begun, the reason in words, and whether the days are a guess."""
+def _days_late(times: Student, policy: Late | None, deadline: datetime | None) -> Lateness:
+    """Return the lateness without a penalty: the days begun, and the reason in words."""
     grace = timedelta(minutes=float(policy.grace_minutes) if policy is not None else 0)
+    due = deadline
+    if due is None and policy is not None:
+        due = policy.due
+    if times.days_late and times.measured_by and times.due and due is not None:
+        measured = _measured_days(times, grace, due)
+        if measured is not None:
+            return measured
     if times.days_late is not None:
         # A whole number is what a person has decided; a fraction is a time, which Moodle has
         # measured.
@@ -119,12 +135,10 @@ def _days_late(
         else:
             source = "as recorded by the instructor"
         is_guess = bool(times.measured_by and times.due)  # which the LMS may not know
-        return days, f"{counted(days, 'day')} late, {source}" if days else "", is_guess
-    due = deadline
+        reason = f"{counted(days, 'day')} late, {source}" if days else ""
+        return Lateness(days, reason=reason, is_guess=is_guess)
     if times.due:
         due = read_time(times.due)
-    elif due is None and policy is not None:
-        due = policy.due
     if times.submitted and due is not None:
         # A time without an offset is in the time zone of the other one.
         submitted = _in_zone(datetime.fromisoformat(times.submitted), due)
@@ -132,17 +146,62 @@ def _days_late(
         days = max(
             0, -((times.extension_days * _DAY + grace - (submitted - due)) // _DAY)
         )  # rounded up to days begun
-        extension = f", extension {times.extension_days:g} day{'s' * (times.extension_days != 1)}"
-        more = extension if times.extension_days else ""
         shown = (
             f"submitted {time_text(submitted, due.tzinfo)}, deadline "
-            f"{time_text(due, due.tzinfo)}{more}"
+            f"{time_text(due, due.tzinfo)}{_extension_text(times)}"
         )
-        return days, f"{counted(days, 'day')} late: {shown}" if days else "", False
+        reason = f"{counted(days, 'day')} late: {shown}" if days else ""
+        return Lateness(days, reason=reason, is_timed=True)
     # The LMS says only that the submission is late, and may not know the student's own deadline.
     if times.is_late:
-        return (1, "late by an unknown time, which counts as 1 day", True)
-    return (0, "", False)
+        reason = "late by an unknown time, which counts as 1 day"
+        return Lateness(1, reason=reason, is_guess=True)
+    return Lateness()
+
+
+def _measured_days(times: Student, grace: timedelta, due: datetime) -> Lateness | None:
+    """Return the lateness of a student with a later deadline, of whom Moodle measured the time.
+
+    Moodle measures it from the deadline of the class, `due`, and rounds down: where the rest
+    decides about a day, the days are a guess. None if the deadline of the class is later: then it
+    may not be the one that Moodle knows.
+    """
+    # Without an extension that only the roster has.
+    measured = timedelta(days=(times.days_late or 0) + times.extension_days)
+    own_due = _in_zone(read_time(times.due), due)
+    later = own_due - _in_zone(due, own_due)
+    if later < timedelta(0):
+        return None
+    later += times.extension_days * _DAY + grace
+    days = max(0, -((later - measured) // _DAY))  # rounded up to days begun
+    most = max(0, -((later - measured - _rounded_by(measured)) // _DAY))
+    deadline = f"the student's deadline {time_text(own_due, own_due.tzinfo)}"
+    reason = ""
+    if days:
+        reason = (
+            f"{counted(days, 'day')} late, by {times.measured_by}'s own status and {deadline}"
+            f"{_extension_text(times)}"
+        )
+    return Lateness(days, reason=reason, is_guess=days != most, is_timed=True)
+
+
+def _extension_text(times: Student) -> str:
+    if not times.extension_days:
+        return ""
+    return f", extension {times.extension_days:g} day{'s' * (times.extension_days != 1)}"
+
+
+def _rounded_by(measured: timedelta) -> timedelta:
+    """Return by how much Moodle may have rounded a time down: to its second unit.
+
+    It is a microsecond less than that, moodlelib.php, format_time().
+    """
+    unit = timedelta(seconds=1)
+    for least, second in _MOODLE_UNITS:
+        if measured >= least:
+            unit = second
+            break
+    return unit - timedelta(microseconds=1)
 
 
 def _in_zone(time: datetime, other: datetime) -> datetime:
