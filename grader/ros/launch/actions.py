@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from grader.ros.installation.places import PREFIX
+from grader.ros.installation.places import PREFIX, SHARE
 from grader.ros.launch.call_arguments import items_in, kind_of
 from grader.ros.launch.components import load_by_command, load_components, start_container
 from grader.ros.launch.launch_classes import CONDITION, ENTITY, SOURCE, class_named, is_a
@@ -39,6 +39,7 @@ from grader.ros.launch.started_nodes import (
 )
 from grader.ros.launch.substitutions import (
     CONDITIONS,
+    PART_UNKNOWN,
     boolean,
     condition_holds,
     known_text,
@@ -572,6 +573,34 @@ def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str,
     return arguments
 
 
+def _launch_by_command(
+    visitor: ActionVisitor, call: Call, words: list[str], context: Context, when: bool | None
+) -> bool:
+    """Add what `ros2 launch` starts of a well-known package; return whether a command does that.
+
+    The file is launched on its own: it gets nothing from this one but its arguments.
+    """
+    match words:
+        case ["ros2", "launch", package, file, *arguments]:
+            path = f"{SHARE}/{package}/launch/{file}"
+        case _:
+            return False
+    given: dict[str, Resolved] = {}
+    for word in arguments:
+        name, separator, value = word.partition(":=")
+        if not separator or PART_UNKNOWN in name:
+            return False
+        given[name] = Unknown("an argument", call.at) if PART_UNKNOWN in value else value
+    own = replace(context, arguments=given, to_all={}, included_by=(), when=when)
+    if not start_known_file(visitor.findings, path, call, own):
+        return False
+    at = visitor.findings.locate(call.at)
+    passed = PassedArguments(path.removeprefix(f"{PREFIX}/"), texts_by_name(given), at, when)
+    visitor.findings.passed.append(passed)
+    visitor.findings.unknown = [row for row in visitor.findings.unknown if row.location != at]
+    return True
+
+
 def _execute_process(
     visitor: ActionVisitor, call: Call, context: Context, when: bool | None
 ) -> None:
@@ -584,7 +613,8 @@ def _execute_process(
     else:
         evaluate = evaluate_process
         words = start_process(visitor.findings, call, context, when)
-        if words and not load_by_command(visitor.findings, call, words, when):
+        is_read = load_by_command(visitor.findings, call, words, when)
+        if words and not is_read and not _launch_by_command(visitor, call, words, context, when):
             visitor.findings.commands.append(" ".join(words))
     if when is not False and before is not False:
         message = f"the same {call.short} is executed twice: make two of them"

@@ -17,9 +17,9 @@ from grader.ros.known.package_rows import (
 )
 from grader.ros.known.ros_machine import ros_machine
 from grader.ros.known.shared_names import shared_names
-from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.launch.launch_model import Launch, PassedArguments, StartedNode
 from grader.ros.urdf.model import Joint
-from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, are_rows_known, bridge_rows
 from grader.ros.workspace.graph.graph import graph_of
 from grader.ros.workspace.graph.running_nodes import RunningNode
 from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
@@ -43,6 +43,9 @@ _TIME = "use_sim_time"
 _CODE, _PAGES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h"), (".md", ".sh")
 _LOOSE = (*_PAGES, ".rst", ".txt", ".yaml", ".yml", "Dockerfile")  # outside of packages
 _SOURCES = (*_CODE, *_PAGES, ".yaml")
+# Launch files that start Gazebo or a part of it, and no bridge.
+_OF_GAZEBO = ("gz_sim.launch.py", "gz_server.launch.py", "gz_spawn_model.launch.py")
+_BRIDGES = (BRIDGE, "ros_ign_bridge")
 _WORD = re.compile(r"[a-z0-9]+")
 
 
@@ -220,7 +223,29 @@ def _may_have_clock(workspace: Workspace) -> bool:
         is_open_bridge = node.package == BRIDGE and None in (node.arguments or (None,))
         if is_open_bridge or _may_be_clock(workspace, node):
             return True
+    passed = [each for _, launch in workspace.launches.roots for each in launch.passed]
+    if any(map(_is_of_gazebo, passed)):
+        return _may_bridge_clock(workspace)
     return _is_told(workspace)
+
+
+def _is_of_gazebo(passed: PassedArguments) -> bool:
+    """Return whether a launch file that is included starts Gazebo, or a robot in it, alone."""
+    package, file = share_parts(f"{PREFIX}/{passed.path}")
+    is_alone = package == "ros_gz_sim" and file.removeprefix("launch/") in _OF_GAZEBO
+    return is_alone and passed.when is not False
+
+
+def _may_bridge_clock(workspace: Workspace) -> bool:
+    """Return whether a bridge that is not read, or a person, may take the clock from Gazebo."""
+    if _is_mentioned(workspace, ("/clock", _CLOCK.partition(".")[0])):
+        return True
+    if any("/clock" in text for text in workspace.texts.loose_texts(_LOOSE)):
+        return True
+    bridges = [node for _, node in workspace.launches.nodes if node.package in _BRIDGES]
+    if not bridges:
+        return any(bridge in text for text in workspace.texts.launch_texts for bridge in _BRIDGES)
+    return not all(are_rows_known(workspace, node) for node in bridges)
 
 
 def _may_start_clock(workspace: Workspace, launch: Launch) -> bool:
@@ -231,14 +256,20 @@ def _may_start_clock(workspace: Workspace, launch: Launch) -> bool:
     for passed in launch.passed:
         package = share_parts(f"{PREFIX}/{passed.path}")[0]
         is_own = workspace.installed.source_of(passed.path) is not None
-        if not is_own and not package_row(package).launches_no_clock:
+        if not (is_own or _is_of_gazebo(passed) or package_row(package).launches_no_clock):
             return True
     return False
 
 
 def _may_be_clock(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether a node may publish /clock: own code, or a program whose name says so."""
-    if workspace.package_of(node) is not None:
+    package = workspace.package_of(node)
+    if package is not None:
+        code = workspace.code.by_package.get(package.name)
+        if code is not None and not code.doubts:
+            programs = {program.name for program in code.programs}
+            if node.executable not in programs:
+                return False  # there is none, which another rule says
         return may_publish_type(workspace, node, _CLOCK)
     is_open = "frames" not in package_row(node.package).without
     return is_open and _says_clock(f"{node.package} {node.executable}")

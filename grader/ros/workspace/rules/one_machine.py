@@ -1,20 +1,23 @@
 """What only one machine has: paths in a home folder, and environment variables without default."""
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 from grader.base.source import Location, Source
-from grader.base.text import counted, cut, quoted
+from grader.base.text import counted, cut, enumerated, quoted
+from grader.ros.known.releases import RELEASES, Release
 from grader.ros.known.ros_machine import ros_machine
 from grader.ros.launch.launch_model import Launch
 from grader.ros.python.parse import Code, lines_of_docstrings, parse
+from grader.ros.workspace.model.stated_releases import releases_in_path
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
     ENVIRONMENT_VARIABLE,
     HOME_PATH,
+    RELEASE_PATH,
 )
 
 # A folder of a user, or a workspace of root.
@@ -26,6 +29,10 @@ _HOME = re.compile(
 _WORKSPACE = re.compile(r"ws/(?:src|install)/[^\s\"'<>,;:)}\]]*+")
 _BEFORE = re.compile(r"(?<![\w~$}.:/-])((?:/[\w.-]*+)+)\Z")
 _PLACEHOLDERS = re.compile(r"^/(?:home|Users)/(?:user|username|you|your[\w-]*|<.*)/")
+# A file in the folder of a release: /opt/ros/humble/share/nav2_bt_navigator/tree.xml.
+_OF_RELEASE = re.compile(
+    rf"(?<![\w/.-])/opt/ros/(?P<release>{'|'.join(RELEASES)})/share/[^\s\"'<>,;:)}}\]]*+"
+)
 _TEXTS = (
     *(".yaml", ".yml", ".urdf", ".xacro", ".sdf", ".world", ".json", ".lua"),
     *(".py", ".cpp", ".hpp", ".cc", ".h"),
@@ -68,6 +75,8 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
     A path in somebody's home folder is yielded once a file. Names of topics and services are no
     paths, nor is what comments and docstrings say.
 
+    So is one in the folder of another release of ROS 2 than the workspace is for.
+
     Those of a launch file at which it reads files are problems of this file, and not yielded.
     """
     topics = _TopicNames(workspace)
@@ -80,9 +89,11 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
             if source.path not in launches:
                 yield Compared("machine")
                 yield from _home_paths(source, (), topics)
+                yield from _release_paths(source, workspace.releases)
         for source in workspace.texts.launch_sources(package):
             if source.path in launches:
                 yield from _home_paths(source, _said_paths(launches[source.path]), topics)
+                yield from _release_paths(source, workspace.releases)
     yield from _variables(workspace)
 
 
@@ -130,6 +141,30 @@ def _said_paths(launch: Launch) -> list[str]:
         for given in node.parameters or ():
             said += [given.path, *(str(value.value) for value in given.values.values())]
     return said
+
+
+def _release_paths(source: Source, releases: Sequence[Release]) -> Iterator[Mismatch]:
+    """Yield the first path of a file in the folder of another release than the workspace is for."""
+    allowed = {*releases, *releases_in_path(source.path)}
+    for path in _OF_RELEASE.finditer(source.text) if releases else ():
+        if path["release"] not in allowed and _is_code(source, path.start()):
+            stated = enumerated([*releases], word="or")
+            message = (
+                f"the path {quoted(cut(path[0], _MAX_SHOWN))} is of {path['release']}, the "
+                f"workspace is for {stated}: find the package in place of it"
+            )
+            yield warning(RELEASE_PATH, message, source.at(path.start()))
+            return
+
+
+def _is_code(source: Source, offset: int) -> bool:
+    """Return whether a place is in no comment and no docstring."""
+    if _is_in_comment(source.text, offset):
+        return False
+    if not source.path.endswith(".py"):
+        return True
+    code = parse(source.text.encode("utf-8", "replace"), source.path)
+    return not isinstance(code, Code) or source.at(offset).line not in lines_of_docstrings(code)
 
 
 def _home_paths(source: Source, said: Collection[str], topics: _TopicNames) -> Iterator[Mismatch]:

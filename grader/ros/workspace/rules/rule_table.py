@@ -683,6 +683,9 @@ COMMAND_TYPE = _companion(
 
 _machine = _rules_of("machine", _ONE_MACHINE)
 HOME_PATH = _machine("home-path", sentence="No file names a folder of one user's machine.")
+RELEASE_PATH = _machine(
+    "release-path", sentence="Files of ROS 2 are found by packages, and not in a release's folder."
+)
 ENVIRONMENT_VARIABLE = _machine(
     "environment-variable",
     sentence="A launch file gives an environment variable a default.",
