@@ -8,6 +8,7 @@ file gives but that cannot be read; a value that the file does not give has ROS 
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import islice
 from math import pi
 from operator import attrgetter
@@ -35,6 +36,7 @@ _Value = TypeVar("_Value")
 _PLACES = ("location", "axis_location", "unresolved")  # fields that are no values
 
 
+@cache
 def compared_fields(kind: type) -> tuple[str, ...]:
     """Return the fields of a kind of element that are its values: all but places in a file."""
     fields: tuple[str, ...] = getattr(kind, "_fields")  # noqa: B009  of a named tuple
