@@ -8,7 +8,6 @@ file gives but that cannot be read; a value that the file does not give has ROS 
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cache
 from itertools import islice
 from math import pi
 from operator import attrgetter
@@ -34,13 +33,12 @@ _MAX_COMPARED = 50  # links whose names are compared
 
 _Value = TypeVar("_Value")
 _PLACES = ("location", "axis_location", "unresolved")  # fields that are no values
+_COMPARED: dict[type, tuple[str, ...]] = {}  # the other fields
 
 
-@cache
 def compared_fields(kind: type) -> tuple[str, ...]:
     """Return the fields of a kind of element that are its values: all but places in a file."""
-    fields: tuple[str, ...] = getattr(kind, "_fields")  # noqa: B009  of a named tuple
-    return tuple(name for name in fields if name not in _PLACES)
+    return _COMPARED[kind]
 
 
 def _compared_by_values(kind: type[_Value]) -> type[_Value]:
@@ -49,7 +47,8 @@ def _compared_by_values(kind: type[_Value]) -> type[_Value]:
     Where they are in a file does not count. Dataclasses do the same, but to make one takes six
     times as long as a named tuple, which all commands wait for.
     """
-    fields = compared_fields(kind)
+    every: tuple[str, ...] = getattr(kind, "_fields")  # noqa: B009  of a named tuple
+    _COMPARED[kind] = fields = tuple(name for name in every if name not in _PLACES)
     values = attrgetter(*fields)
 
     def is_equal(self: _Value, other: object) -> bool:
