@@ -3,13 +3,15 @@
 import ast
 from collections.abc import Iterator
 from decimal import Decimal
+from pathlib import Path
+from shutil import copytree
 
 import pytest
 
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
-from grader.lab.submission.opening import read_submission
+from grader.lab.submission.opening import open_submission, read_submission
 from tests.samples import ROOT, RUBRICS, SAMPLES
 from tests.test_architecture import MODULES
 
@@ -45,6 +47,24 @@ def constants(tree: ast.AST) -> Iterator[str]:
             and id(node) not in docstrings
         ):
             yield node.value
+
+
+def test_a_partial_fix_lowers_no_score(tmp_path: Path) -> None:
+    """An entry for the wrong folder costs no more than no entry."""
+    rubric = RUBRICS["lab6"]
+    entry = "(os.path.join('share', package_name), glob('rviz/*')),"
+    scores = []
+    for number, other in enumerate((entry.replace("name)", "name, 'views')"), "")):
+        folder = tmp_path / str(number)
+        copytree(ROOT / "rubrics/lab6/my_robot", folder)
+        setup = folder / "setup.py"
+        text = setup.read_text(encoding="utf-8")
+        assert entry in text
+        setup.write_text(text.replace(entry, other), encoding="utf-8")
+        report = grade(rubric, open_submission(str(folder), rubric.lab))
+        scores.append(report.score)
+        assert report.score < Decimal(90)
+    assert scores[0] >= scores[1]
 
 
 @pytest.mark.slow

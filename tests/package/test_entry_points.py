@@ -3,6 +3,7 @@
 import pytest
 
 from grader.files.tree import make_tree, overlaid
+from grader.ros.nodes.python.package_slips import package_slips
 from grader.ros.package.entry_points import entry_fault
 from grader.ros.package.finding import read_packages
 from grader.ros.package.package import Package
@@ -77,6 +78,35 @@ def test_a_program_whose_function_is_not_there_does_not_start(
     found = entry_fault(package_of(scripts, **files), "talk")
     assert found is not None
     assert (found[0], found[1].path, found[1].line) == (fault, "src/hub/setup.py", 5)
+
+
+SLIPS = [
+    ("'talk = hub.talker:mian'", {"talker": "def main(): pass"}, "'talk = hub.talker:main'"),
+    ("'talk = hub.talker:start'", {"talker": "def main(): pass"}, "'talk = hub.talker:main'"),
+    ("'talk = hub.talkr:main'", {"talker": "def main(): pass"}, "'talk = hub.talker:main'"),
+    ("'talk = hub.node:main'", {"talk": "", "a": ""}, "'talk = hub.talk:main'"),
+    ("'talk = hub.talker:start'", {"talker": "def main(): pass\ndef other(): pass"}, None),
+    ("'talk = hub.talker:main'", {"talker": "def main(): pass"}, None),
+    ("'talk = ' 'hub.talker:start'", {"talker": "def main(): pass"}, None),
+]
+
+
+@pytest.mark.parametrize(("scripts", "files", "meant"), SLIPS)
+def test_a_function_that_is_surely_meant_is_read(
+    scripts: str, files: dict[str, str], meant: str | None
+) -> None:
+    """It has nearly the same name, or is the only one."""
+    package = package_of(scripts, **files)
+    text = _SETUP % scripts
+    for slip in package_slips(package):
+        [edit] = slip.edits
+        assert slip.is_refused
+        assert meant is not None
+        start = package.installation.source.offset(edit.line, edit.column)
+        assert text[:start] + edit.new + text[start + len(edit.old) :] == _SETUP % meant
+        break
+    else:
+        assert meant is None
 
 
 UNKNOWN = [

@@ -43,7 +43,8 @@ class Reason(StrEnum):
     EXCUSED = "excused"
 
 
-# They keep a grade from being published; of a final mark only GONE needs attention.
+# They keep a grade from being published; of a final mark only GONE needs attention. A mark that is
+# older than the submission does, too, if it replaces what a check finds in the newer one.
 _OBSTACLES = {
     *(
         Reason.FAILED,
@@ -306,8 +307,19 @@ class StudentGrade:
         """What keeps this grade from being published; None if it is final."""
         if self.has_final:
             return Reason.EXCUSED if self.is_excused else None
+        obstacles = _OBSTACLES | {Reason.OLDER_MARKS} if self._has_older_override else _OBSTACLES
         pending = Reason.PENDING if self.pending else None
-        return next((one for one in self.concerns if one in _OBSTACLES), pending)
+        return next((one for one in self.concerns if one in obstacles), pending)
+
+    @property
+    def _has_older_override(self) -> bool:
+        """Whether a mark replaces other points that the changed submission has by the checks."""
+        for one in self.results:
+            if one.manual_mark is not None and one.criterion.id in self.older:
+                by_check = one._replace(manual_mark=None)
+                if not by_check.is_open and by_check.points != one.points:
+                    return True
+        return False
 
     @property
     def why_open(self) -> str:

@@ -102,7 +102,9 @@ class ClassTable:
         self.attention += bool(grade.concerns)
         self.open += bool(grade.pending)
         name = grade.student.name or grade.student.key
-        why_open = grade.obstacle.name.lower() if grade.obstacle is not None else ""
+        why_open = (
+            grade.obstacle.name.lower().replace("_", " ") if grade.obstacle is not None else ""
+        )
         if grade.obstacle is Reason.PENDING:
             why_open = counted_points(grade.pending)
         order = family_name_order(name, grade.student.key)

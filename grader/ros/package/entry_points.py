@@ -49,7 +49,8 @@ class _EntryPoint(NamedTuple):
 class _EntryFault(NamedTuple):
     """Why a program certainly does not start, and where setup.py names it.
 
-    It has the word there that may mean another one.
+    It has the word there that may mean another one, which is sure for nearly the same name, or the
+    only one that there is.
     """
 
     message: str
@@ -57,6 +58,7 @@ class _EntryFault(NamedTuple):
     written: str
     meant: str | None
     entry: _EntryPoint  # the one that is meant, else as it is written
+    is_sure: bool = False
 
 
 @lru_cache(maxsize=4)
@@ -312,11 +314,12 @@ def _fault(
     If none may be, it has the names that there are.
     """
     meant = closest(written, known) or fallback or None
+    is_sure = meant is not None and meant in (near(written, known), fallback)
     if meant is not None:
         message += f"; did you mean {meant!r}?"
     elif known:
         message += f"; there is {enumerated([repr(module) for module in known[:MAX_NAMED]])}"
-    return _EntryFault(message, entry.location, written, meant, entry)
+    return _EntryFault(message, entry.location, written, meant, entry, is_sure)
 
 
 def _with_module(fault: _EntryFault, position: int) -> _EntryFault:

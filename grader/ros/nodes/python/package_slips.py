@@ -12,12 +12,14 @@ from grader.base.source import Source
 from grader.ros.config.yaml_slips import yaml_slips
 from grader.ros.installation.installation import Installation
 from grader.ros.launch.launch_slips import launch_slips, name_slips
+from grader.ros.package.entry_points import entry_fault, entry_points
 from grader.ros.package.package import SETUP, Package
 from grader.ros.python.parse import Code, location_in, parse, position_of
 from grader.ros.python.walking import walk
 
 _LIMIT = 32 * 1024  # bytes of a file, because what may be meant is tried by reading it again
 _MAX_FILES = 20
+_MAX_ENTRIES = 20  # of setup.py
 _YAML = (".yaml", ".yml", ".rviz")
 
 
@@ -92,6 +94,7 @@ def _build_slips(package: Package, installation: Installation) -> Iterator[Slip]
     code = parse(data or b"", package.path(SETUP))
     if isinstance(code, Code):
         yield from _argument_slips(installation, code)
+        yield from _entry_slips(package, code.source)
         yield from _name_slips(package, installation, code, name)
 
 
@@ -107,6 +110,30 @@ def _argument_slips(installation: Installation, code: Code) -> Iterator[Slip]:
                 ignored.meant or "",
                 f"setuptools ignores the argument {ignored.name}",
             )
+
+
+def _entry_slips(package: Package, source: Source) -> Iterator[Slip]:
+    """Yield the module or function of an entry point that is not there, where one surely is meant.
+
+    It is one of nearly the same name, or the only function of the module.
+    """
+    for entry in entry_points(package)[:_MAX_ENTRIES]:
+        fault = entry_fault(package, entry.name)
+        if fault is None or fault.meant is None or not fault.is_sure:
+            continue
+        start = source.offset(entry.location.line, entry.location.column)
+        written = re.match(r"[^'\"\n]*", source.text[start:])
+        places = [
+            match.start()
+            for match in re.finditer(r"\w+", written[0] if written is not None else "")
+            if match[0] == fault.written
+        ]
+        if places:
+            begin = start + places[-1]
+            edit = source.edit(begin, begin + len(fault.written), fault.meant)
+            assumption = f"{fault.written} is read as {fault.meant}"
+            message = f"the entry point of {entry.name!r} names no function: {fault.message}"
+            yield Slip((edit,), message, assumption, entry.location, is_refused=True)
 
 
 def _name_slips(

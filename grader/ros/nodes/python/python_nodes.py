@@ -43,6 +43,12 @@ from grader.ros.nodes.python.branches import calls_in_branches
 from grader.ros.nodes.python.broadcast_transforms import SENDS, SendingMethod, sent_transforms
 from grader.ros.nodes.python.code_faults import ModuleText, attributes_in, code_faults
 from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bindings
+from grader.ros.nodes.python.inherited_nodes import (
+    MORE_ARGUMENTS,
+    OTHER_BASE,
+    OwnClass,
+    with_inherited,
+)
 from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
 from grader.ros.nodes.python.node_slips import Program as StartedProgram
 from grader.ros.nodes.python.node_slips import node_slips
@@ -170,6 +176,10 @@ def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
     doubts = [Doubt("the file is not read", Location(package.path(path), 1, 1)) for path in unread]
     kinds = _derived_classes(modules)
     nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
+    classes: dict[str, OwnClass] = {}
+    for module in modules.values():
+        classes |= module.own_classes()
+    nodes = with_inherited(nodes, classes, _OPTIONS)
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
     programs = []
     for program in _programs(package, modules, nodes, reads_meant=reads_meant):
@@ -494,7 +504,7 @@ class _Module:
             if full in kinds:
                 self._facts[at] = []
                 if not NODE_CLASSES.issuperset(self.bases[full]):
-                    doubt = Doubt("what another base class does is not added", at)
+                    doubt = Doubt(OTHER_BASE, at)
                     self._facts[at].append(doubt)
         self._read_calls()
         if self._constants.budget.is_spent:
@@ -503,6 +513,15 @@ class _Module:
             )
         encodings = self._content.encodings() if self._uses("cv_bridge") else {}
         return [self._node(at, facts, encodings) for at, facts in self._facts.items()]
+
+    def own_classes(self) -> dict[str, OwnClass]:
+        """Return the classes of the module by their full names."""
+        scopes = {part.of: part.scope for part in self._parts if part.name == "__init__"}
+        own_classes: dict[str, OwnClass] = {}
+        for at, full in self._classes.items():
+            evaluate = partial(self._value_in, scopes.get(at, Scope({})))
+            own_classes[full] = OwnClass(self._class_nodes[at], self.bases[full], at.path, evaluate)
+        return own_classes
 
     def _read_calls(self) -> None:
         """Add the nodes that calls make, then the facts that calls add to nodes."""
@@ -826,7 +845,8 @@ class _Module:
             yield _Name(_text(name), self._at(call))
             for keyword in call.keywords:
                 if keyword.arg in _OPTIONS:
-                    yield Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))
+                    reason = f"{keyword.arg} of its Node" if keyword.arg else MORE_ARGUMENTS
+                    yield Doubt(reason, self._at(call))
 
     def _read_method(self, part: CodePart, call: ast.Call, method: str) -> "Iterator[_Fact]":
         """Yield what a method of a node declares, opens or reads."""

@@ -1,0 +1,227 @@
+"""Nodes whose class is derived from another class of the package: what that declares and opens.
+
+A class adds what its base class does if it has no other base, calls the constructor of the base
+once, and replaces nothing that decides what the base does. All others keep their doubt.
+"""
+
+import ast
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from grader.ros.nodes.message_uses import given_argument
+from grader.ros.nodes.node_facts import NodeFacts
+from grader.ros.nodes.python.called_functions import methods_of
+from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
+from grader.ros.python.constants import dotted
+from grader.ros.python.parse import own_nodes
+from grader.ros.python.values import Value
+from grader.ros.python.walking import walk
+
+OTHER_BASE = "what another base class does is not added"
+MORE_ARGUMENTS = "more arguments of its Node"
+_MAX_DEPTH = 8  # of classes derived from each other
+
+
+class OwnClass(NamedTuple):
+    """A class of a module: its syntax, the full names of its bases, and its file.
+
+    `evaluate` gives the values of expressions in its constructor.
+    """
+
+    node: ast.ClassDef
+    bases: Sequence[str | None]
+    path: str
+    evaluate: Callable[[ast.expr], Value]
+
+
+class _Constructor(NamedTuple):
+    """The constructor of a class, and how it calls that of its base.
+
+    `first` is the position of the first argument of the call behind self.
+    """
+
+    function: ast.FunctionDef
+    call: ast.Call
+    first: int
+    evaluate: Callable[[ast.expr], Value]
+
+
+def with_inherited(
+    nodes: Sequence[NodeFacts], classes: Mapping[str, OwnClass], options: Sequence[str | None]
+) -> list[NodeFacts]:
+    """Return nodes with what their base classes of the package declare and open.
+
+    `classes` are those of the package by their full names; `options` are arguments of Node that
+    leave open what it does.
+    """
+    by_name = {node.class_name: node for node in nodes if node.class_name}
+    return [_joined(node, by_name, classes, options) or node for node in nodes]
+
+
+def _joined(
+    node: NodeFacts,
+    by_name: Mapping[str, NodeFacts],
+    classes: Mapping[str, OwnClass],
+    options: Sequence[str | None],
+) -> NodeFacts | None:
+    """Return a node with what its base classes add; None if that is not known."""
+    chain = _base_classes(node.class_name, classes)
+    if len(chain) < 2 or any(name not in by_name for name in chain):
+        return None
+    facts = [by_name[name] for name in chain]
+    for index, derived in enumerate(chain[:-1]):
+        bases = [*zip(chain[index + 1 :], facts[index + 1 :], strict=True)]
+        if any(_replaces(classes[derived], classes[base], of_base) for base, of_base in bases):
+            return None
+    constructors: list[_Constructor] = []
+    for name in chain:
+        if "__init__" not in methods_of(classes[name].node):
+            continue  # that of the base is called
+        constructor = _constructor_of(classes[name])
+        if constructor is None:
+            return None
+        constructors.append(constructor)
+    if not constructors:
+        return None
+    doubts = [doubt for each in facts for doubt in each.doubts if doubt.reason != OTHER_BASE]
+    is_whole = len(constructors) == len(chain)
+    if is_whole and _takes_more(constructors[-1]) and not _gives_more(constructors[:-1], options):
+        doubts = [doubt for doubt in doubts if doubt.reason != MORE_ARGUMENTS]
+    return node._replace(
+        name=_passed_name(constructors),
+        named_at=None,
+        endpoints=tuple(end for each in facts for end in each.endpoints),
+        parameters=tuple(parameter for each in facts for parameter in each.parameters),
+        timers=tuple(timer for each in facts for timer in each.timers),
+        doubts=tuple(doubts),
+        frames=tuple(frame for each in facts for frame in each.frames),
+        transforms=tuple(transform for each in facts for transform in each.transforms),
+    )
+
+
+def _base_classes(name: str, classes: Mapping[str, OwnClass]) -> list[str]:
+    """Return a class and its bases in the package, if the last one is derived from rclpy's only."""
+    chain: list[str] = []
+    while name in classes and name not in chain and len(chain) < _MAX_DEPTH:
+        chain.append(name)
+        own_class = classes[name]
+        if len(own_class.bases) != 1 or own_class.node.keywords or own_class.node.decorator_list:
+            return []
+        [base] = own_class.bases
+        if base in NODE_CLASSES:
+            return chain
+        name = base or ""
+    return []
+
+
+def _replaces(derived: OwnClass, base: OwnClass, of_base: NodeFacts) -> bool:
+    """Return whether a class replaces what decides what its base declares and opens.
+
+    It is an attribute that the base reads, or a method in which the base does so.
+    """
+    methods = methods_of(base.node)
+    locations = [
+        *(end.location for end in of_base.endpoints),
+        *(parameter.location for parameter in of_base.parameters),
+        *(timer.location for timer in of_base.timers),
+        *(frame.location for frame in of_base.frames),
+        *(transform.location for transform in of_base.transforms),
+    ]
+    lines = [at.line for at in locations if at.path == base.path]
+    read = {
+        node.attr
+        for node in walk(base.node)
+        if isinstance(node, ast.Attribute) and dotted(node.value) == "self"
+    }
+    own_methods = methods_of(derived.node)
+    for name in _replaced_names(derived.node):
+        method = methods.get(name)
+        if name in read and name not in own_methods:
+            return True
+        if method is not None and any(
+            method.lineno <= line <= (method.end_lineno or method.lineno) for line in lines
+        ):
+            return True
+    return False
+
+
+def _replaced_names(node: ast.ClassDef) -> Iterator[str]:
+    """Yield the names that a class gives its attributes and methods, but for its constructor."""
+    for part in own_nodes(node):
+        match part:
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
+                if name != "__init__":
+                    yield name
+            case ast.Name(id=name, ctx=ast.Store()):
+                yield name
+    for part in walk(node):
+        match part:
+            case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Store()):
+                yield name
+
+
+def _constructor_of(own_class: OwnClass) -> _Constructor | None:
+    """Return the constructor of a class that surely calls that of its base once."""
+    function = methods_of(own_class.node).get("__init__")
+    if function is None or function.decorator_list:
+        return None
+    calls = [
+        node
+        for node in walk(own_class.node)
+        if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "__init__"
+    ]
+    statements = [each.value for each in function.body if isinstance(each, ast.Expr)]
+    if len(calls) != 1 or calls[0] not in statements:
+        return None
+    [call] = calls
+    assert isinstance(call.func, ast.Attribute)
+    is_super = isinstance(call.func.value, ast.Call) and dotted(call.func.value.func) == "super"
+    return _Constructor(function, call, 0 if is_super else 1, own_class.evaluate)
+
+
+def _takes_more(constructor: _Constructor) -> bool:
+    """Return whether a constructor passes on what its own ** takes, and nothing else by **."""
+    taken = constructor.function.args.kwarg
+    passed = [keyword.value for keyword in constructor.call.keywords if keyword.arg is None]
+    return taken is not None and [dotted(value) for value in passed] == [taken.arg]
+
+
+def _gives_more(constructors: Sequence[_Constructor], options: Sequence[str | None]) -> bool:
+    """Return whether calls of the constructor of a base give Node one of some options."""
+    for constructor in constructors:
+        for keyword in constructor.call.keywords:
+            is_off = isinstance(keyword.value, ast.Constant) and keyword.value.value is False
+            if keyword.arg in options and not is_off:
+                return True
+    return False
+
+
+def _passed_name(constructors: Sequence[_Constructor]) -> str | None:
+    """Return the name that a node gets: what the last constructor gives Node, or what it is given.
+
+    The constructors are those of a class and its bases, in this order.
+    """
+    wanted, position, default = "node_name", 0, None
+    for constructor in reversed(constructors):
+        given = given_argument(constructor.call, position + constructor.first, wanted) or default
+        value = constructor.evaluate(given) if given is not None else None
+        if isinstance(value, str):
+            return value
+        parameters = constructor.function.args.args
+        names = [parameter.arg for parameter in parameters]
+        if not isinstance(given, ast.Name) or given.id not in names[1:]:
+            return None
+        if any(isinstance(each, ast.Name) and each.id == given.id for each in _stored(constructor)):
+            return None
+        wanted, position = given.id, names.index(given.id) - 1
+        behind = names.index(given.id) - len(names)
+        defaults = constructor.function.args.defaults
+        default = defaults[behind] if -behind <= len(defaults) else None
+    return None
+
+
+def _stored(constructor: _Constructor) -> Iterator[ast.AST]:
+    """Yield the names that a constructor binds."""
+    for node in walk(constructor.function):
+        if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del):
+            yield node
