@@ -165,7 +165,7 @@ WEIGHTS = {
     "ros.launch": 46_300,  # where a launch file gives a parameter; substitutions of Nav2 and changes of the environment; what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
     "ros.log": 4_050,  # names of findings beside their lines, and what keeps a started robot from being read
     "ros.mesh": 4_300,
-    "ros.nodes": 66_600,  # poses by other names; ends of goals in C++ and with other statements; the poses of transforms that code sends; the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions; fields of transforms of C++ read once
+    "ros.nodes": 66_750,  # whether a node has another callback; poses by other names; ends of goals in C++ and with other statements; the poses of transforms that code sends; the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions; fields of transforms of C++ read once
     "ros.package": 28_150,  # the program that the name of a module means; interface packages that a target does not link; the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
     "ros.python": 30_000,  # names that branches lack; walking over its syntax in half the time; branches that only set the environment; the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
