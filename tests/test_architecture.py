@@ -155,7 +155,7 @@ WEIGHTS = {
     "lab.hints": 36_000,  # functions of complexity at most 10
     "lab.rubric": 10_000,
     "lab.submission": 9_600,  # the release that reads a URDF, slips that are proven by reading it again
-    "report": 65_700,  # the graph of a graded submission; the screen of an inspection: rows by causes, each error in the first ones; the graph of a launch file as text, JSON, DOT, Mermaid and a page
+    "report": 66_000,  # the folders in which the paths of robots differ; the graph of a graded submission; the screen of an inspection: rows by causes, each error in the first ones; the graph of a launch file as text, JSON, DOT, Mermaid and a page
     "ros": 350,  # the API has the names that checks of the graph use
     "ros.config": 5_750,  # numbers of parameters in quotes
     "ros.cpp": 13_400,  # nodes in a list, and names that are read once; errors of the grammar that leave open one statement only
