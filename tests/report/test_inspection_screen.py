@@ -24,7 +24,7 @@ ERRORS = [kind for kind in EVERY_KIND if kind.severity == "error"]
 OTHERS = [kind for kind in EVERY_KIND if kind.severity != "error"]
 SEEDS = st.integers(0, 10**9)
 _HEAD = re.compile(r"  (?P<code>[A-Z]+[0-9]{3}) (?P<severity>error|warning|note)\b")
-EXTENT = Extent(3, 0, 2, 1, 1, 0, 0, 0, 0, ReadCalls(1, 1, ()), NOT_STATED)
+EXTENT = Extent(3, 0, 2, 1, 1, 0, 0, 0, 0, 0, ReadCalls(1, 1, ()), NOT_STATED)
 FOLDERS = ("src", "robot_bringup", "a", "navigation_and_mapping", "config", "launch")
 NAMES = ("x.yaml", "bringup.launch.py", "a_node_with_a_very_long_name.py")
 WORDS = ("the", "node", "'driver'", "src/a/config/driver.yaml:3", "has", "no", "parameter", "rate")

@@ -468,7 +468,10 @@ MAYBE = [
     ),
     (
         "        response.done = True\n        return response",
-        "        time.sleep(1)\n        return response",
+        (
+            "        time.sleep(1)\n        time.sleep(1)\n        return response\n\n"
+            "    def watch(self):\n        self.timer = self.create_timer(1.0, self.publish)"
+        ),
         "while time.sleep() in the callback on_lock() waits, no other callback runs",
     ),
     (

@@ -229,3 +229,49 @@ def test_a_robot_that_leans_is_a_warning(
         assert (problem["severity"], problem["location"]["line"]) == ("warning", line)
         assert problem["message"].startswith(text)
         assert run(("inspect", tmp_path)).returncode == 0
+
+
+_SETUP = """\
+from glob import glob
+from setuptools import setup
+setup(name='arm', version='0.1.0', packages=[], data_files=[
+    ('share/ament_index/resource_index/packages', ['resource/arm']),
+    ('share/arm', ['package.xml']),
+    ('share/arm/launch', glob('launch/*')),
+    ('share/arm/urdf', glob('PATTERN')),
+])
+"""
+
+
+@pytest.mark.parametrize(
+    ("pattern", "file", "codes"),
+    [
+        pytest.param("urdf/*.xacro", "urdf/arm.urdf", ["REF001"], id="of the file"),
+        pytest.param("meshes/*.stl", "urdf/arm.urdf", ["PKG013", "REF001"], id="of other files"),
+        pytest.param("urdf/*.xacro", "launch/a.launch.py", ["PKG013"], id="of no file"),
+    ],
+)
+def test_a_pattern_without_a_match_is_said_with_the_file(
+    pattern: str, file: str, codes: list[str], tmp_path: Path
+) -> None:
+    """A file that a build does not install for its pattern is one finding, which names that."""
+    action = "Node(package='rviz2', executable='rviz2', arguments=[share('arm') + '/FILE']),"
+    launch = _LAUNCH.format(actions=action.replace("FILE", file))
+    importing = "from ament_index_python.packages import get_package_share_directory as share\n"
+    manifest = _MANIFEST.format(name="arm", depends="<depend>rviz2</depend>", build="python")
+    files = {
+        "arm/package.xml": manifest,
+        "arm/setup.py": _SETUP.replace("PATTERN", pattern),
+        "arm/setup.cfg": "[install]\ninstall_scripts=$base/lib/arm\n",
+        "arm/resource/arm": "",
+        "arm/launch/a.launch.py": importing + launch,
+        "arm/urdf/arm.urdf": "<robot name='arm'><link name='base'/></robot>",
+        "arm/meshes/.keep": "",
+    }
+    problems = inspected(tmp_path, files)["problems"]
+    said = {each["code"]: each["message"] for each in problems if each["code"] in codes}
+    wanted = ("PKG013", "REF001")
+    assert sorted(each["code"] for each in problems if each["code"] in wanted) == codes
+    if codes == ["REF001"]:
+        expected = "the pattern 'urdf/*.xacro' in setup.py matches no file; there is urdf/arm.urdf"
+        assert said["REF001"].endswith(f": {expected}")

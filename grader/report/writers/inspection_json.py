@@ -72,8 +72,8 @@ _EXTENT = JsonObject(
     {
         **each(
             TOTAL,
-            "packages robots launch_files nodes all_nodes unread_robots cpp_files computed_names "
-            "expressions",
+            "packages robots launch_files nodes all_nodes unread_packages unread_robots cpp_files "
+            "computed_names expressions",
         ),
         "calls": (TOTAL, "calls.known"),
         "all_calls": (TOTAL, "calls.total"),

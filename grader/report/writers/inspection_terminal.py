@@ -3,8 +3,9 @@
 Text of files is never interpreted as markup or control codes.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import inf
+from os.path import commonprefix
 
 from rich.console import Console
 from rich.text import Text
@@ -111,11 +112,15 @@ def _robot_rows(inspection: Inspection, console: Console) -> Iterator[Text]:
     is_only = len(inspection.robots) == 1
     yield Text()
     yield Text("Robot" if is_only else "Robots", "bold")
-    for robot in inspection.robots:
-        path, line = printable(robot.path), robot_line(robot)
-        if not is_only:
-            room = console.width - INDENT - len(line) - len(": ")
-            path = _end_of(path, max(room, _MIN_MESSAGE))
+    paths = [printable(robot.path) for robot in inspection.robots]
+    ends = []
+    for robot, path in zip(inspection.robots, paths, strict=True):
+        room = console.width - INDENT - len(robot_line(robot)) - len(": ")
+        ends.append(path if is_only else _end_of(path, max(room, _MIN_MESSAGE)))
+    if len({*ends}) < len({*paths}):
+        ends = _with_difference(paths)
+    for robot, path in zip(inspection.robots, ends, strict=True):
+        line = robot_line(robot)
         text = Text.assemble(" " * INDENT, path, ": ", (line, _STYLES[robot.verdict]))
         yield block(console, text, 2 * INDENT, Text()) if is_only else shortened(console, text)
 
@@ -324,6 +329,18 @@ def _end_of(text: str, most: int) -> str:
     if len(text) <= most:
         return text
     return _POINTS + text[len(text) - most + len(_POINTS) :]
+
+
+def _with_difference(paths: Sequence[str]) -> list[str]:
+    """Return the names of files, each with the first folders in which their paths differ."""
+    start = commonprefix(paths).rfind("/") + 1  # noqa: RUF071  the last slash ends a folder
+    shown = []
+    for path in paths:
+        folders, _, name = path[start:].rpartition("/")
+        if len(folders) > _MIN_MESSAGE:
+            folders = f"{folders[: _MIN_MESSAGE - len(_POINTS)]}{_POINTS}"
+        shown.append(f"{folders}/{name}".lstrip("/"))
+    return shown
 
 
 def _name_of(shown: Cause | CauseKind) -> Text:

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from grader.base.text import counted, enumerated, printable
 from grader.ros.known.releases import StatedReleases
+from grader.ros.package.finding import is_backup
 from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.read_calls import ReadCalls, read_calls
@@ -20,6 +21,7 @@ class Extent(NamedTuple):
     launch_files: int
     nodes: int  # of which the source was read
     all_nodes: int
+    unread_packages: int  # of another workspace in the folder, with the name of one that is read
     unread_robots: int
     cpp_files: int
     computed_names: int  # of topics, services and actions
@@ -30,10 +32,10 @@ class Extent(NamedTuple):
     @property
     def is_whole(self) -> bool:
         """Whether everything was read that may define or use names."""
-        unread = (self.unread_robots, self.cpp_files, self.computed_names, self.expressions)
+        unread = (self.unread_packages, self.unread_robots, self.cpp_files, self.computed_names)
         has_names = self.robots + self.launch_files + self.calls.total > 0
         is_known = self.nodes == self.all_nodes and self.calls.known == self.calls.total
-        return has_names and is_known and not any(unread)
+        return has_names and is_known and not any((*unread, self.expressions))
 
     @property
     def words(self) -> str:
@@ -62,6 +64,9 @@ class Extent(NamedTuple):
         text = f"read: {', '.join(read) or 'nothing'}"
         if unread:
             text += f"; not read: {', '.join(unread)}"
+        if self.unread_packages:
+            others = counted(self.unread_packages, "package")
+            text += f"; not inspected: {others} with the name of another: give one workspace"
         return f"{text}; {self.stated.words}"
 
 
@@ -87,6 +92,7 @@ def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) 
         launch_files=len(workspace.launches.files),
         nodes=len(nodes),
         all_nodes=len(nodes) + len(_unread_programs(workspace)),
+        unread_packages=_count_copies(workspace),
         unread_robots=unread_robots,
         cpp_files=cpp_files,
         computed_names=sum(endpoint.is_computed for endpoint in endpoints),
@@ -94,6 +100,20 @@ def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) 
         calls=read_calls(workspace),
         stated=stated,
     )
+
+
+def _count_copies(workspace: Workspace) -> int:
+    """Return how many packages have the name of one that is read, each in a workspace of its own.
+
+    Backups, and copies in one workspace, of which a problem says that colcon refuses them, do not
+    count.
+    """
+    used = {package.folder for package in workspace.packages}
+    count = 0
+    for package in workspace.folder.found_packages:
+        is_left_out = package.ignored_by or package.copies or is_backup(package.folder)
+        count += package.folder not in used and not is_left_out
+    return count
 
 
 def _unread_programs(workspace: Workspace) -> set[tuple[str, str]]:

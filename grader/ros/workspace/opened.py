@@ -155,12 +155,13 @@ class OpenedWorkspace:
         """Return what is wrong in its packages: in their files, then names that do not agree."""
         # Late: most commands list no problems of a workspace.
         from grader.ros.workspace.rules.file_problems import listed_problems, ros1_problem
+        from grader.ros.workspace.rules.one_cause import without_said_patterns
         from grader.ros.workspace.rules.release_problems import compared_names
 
         problems = [ros1_problem(package) for package in self.ros1_packages]
         problems += listed_problems(self.workspace)
         problems += compared_names(self.workspace)
-        return problems
+        return without_said_patterns(problems)
 
     def default_value(self, node: str, parameter: str) -> "ParameterValue | None":
         """Return the value that a node has for a parameter that it does not get; None without."""

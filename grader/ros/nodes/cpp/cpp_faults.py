@@ -5,6 +5,7 @@ Each rule is about what certainly fails once it runs.
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from itertools import chain
 
 from grader.ros.cpp.declarations import CppFunction, declared_in, plain
@@ -53,6 +54,7 @@ _CONCURRENT = ("create_callback_group", "MultiThreadedExecutor", "thread", "asyn
 _WAITING = ("wait", "get")
 _SLEEPING = ("sleep_for", "sleep_until", "sleep", "usleep")
 _GIVEN_CALLBACKS = (*_KEPT, "create_client")
+_OTHER_CALLBACKS = ("TransformListener", "message_filters", "async_send_request")
 _SENDING = ("sendTransform", "push_back", "emplace_back")
 _ROTATION = re.compile(r"(\w+(?:(?:\.|->)\w+)*)(?:\.|->)rotation\.([xyzw])")
 _ZERO = re.compile(r"-?(?:0++(?:\.0*+)?|\.0++)f?")
@@ -308,7 +310,9 @@ class _CppSearch:
                 yield from self._sleeping_in(function)
 
     def _sleeping_in(self, function: CppFunction) -> Iterator[CodeFault]:
-        """Yield where a callback sleeps."""
+        """Yield where a callback sleeps, in a program with another callback."""
+        if not self._has_several_callbacks:
+            return
         for call in self._own_calls(function, *_SLEEPING):
             if self._is_in_callback(call, function):
                 name = called_name(call)
@@ -316,6 +320,14 @@ class _CppSearch:
                 message = f"while {name}() in {callback} waits, no other callback runs"
                 yield CodeFault("sleeps in a callback", message, call.location, is_certain=False)
                 break
+
+    @cached_property
+    def _has_several_callbacks(self) -> bool:
+        """Whether more than one callback may run in the program."""
+        count = 0
+        for function in self._unit.functions:
+            count += len([*self._calls(function, *_KEPT)])
+        return count > 1 or not self._words().isdisjoint(_OTHER_CALLBACKS)
 
     def _waiting_in(self, function: CppFunction) -> Iterator[CodeFault]:
         """Yield where a method waits in a callback.

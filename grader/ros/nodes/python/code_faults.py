@@ -71,6 +71,8 @@ _ENDING = frozenset({"sys.exit", "exit", "quit", "os._exit"})
 
 
 # What a loop may call that only waits.
+# What calls functions of a node besides its timers, subscriptions, services and actions.
+_OTHER_CALLBACKS = ("TransformListener", "message_filters", "add_done_callback")
 _PAUSES = frozenset({"time.sleep", "sleep", "rate.sleep", "self.rate.sleep"})
 
 
@@ -417,6 +419,7 @@ class _Search:
         for function in self._reached():
             for call in _calls_in(function):
                 yield from self._waiting(call, function.name, clients)
+            yield from self._sleeping(function)
             yield from self._loops(function)
 
     def _loops(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[CodeFault]:
@@ -474,15 +477,21 @@ class _Search:
                 given += functions.get(dotted(node).removeprefix("self."), ())
         return _with_callees(given, functions)
 
+    def _sleeping(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[CodeFault]:
+        """Yield where a callback first sleeps, in a module with another callback."""
+        text = self._code.source.text
+        has_others = len(self._registered) > 1 or any(word in text for word in _OTHER_CALLBACKS)
+        calls = [call for call in _calls_in(function) if dotted(call.func) == "time.sleep"]
+        if not has_others or not calls or "time" not in self._module.imports:
+            return
+        at = self._at(min(calls, key=position_of))
+        message = (
+            f"while time.sleep() in the callback {function.name}() waits, no other callback runs"
+        )
+        yield CodeFault("sleeps in a callback", message, at, is_certain=False)
+
     def _waiting(self, call: ast.Call, name: str, clients: Collection[str]) -> Iterator[CodeFault]:
         called = dotted(call.func)
-        if called == "time.sleep":
-            if "time" in self._module.imports:
-                message = (
-                    f"while time.sleep() in the callback {name}() waits, no other callback runs"
-                )
-                yield CodeFault("sleeps in a callback", message, self._at(call), is_certain=False)
-            return
         owner, _, method = called.rpartition(".")
         if any(keyword.arg == "timeout_sec" for keyword in call.keywords) or len(call.args) > 2:
             return

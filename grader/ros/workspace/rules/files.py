@@ -12,6 +12,7 @@ from grader.ros.installation.installation import Installation
 from grader.ros.installation.places import PREFIX, SHARE, share_parts
 from grader.ros.known.package_rows import names_of_read_files, package_row, written_files
 from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.package.found_problems import why_no_match
 from grader.ros.package.installed_files import (
     are_installs_known,
     is_surely_absent,
@@ -311,8 +312,13 @@ def _not_there(
         )
     if source.state == "not installed":
         message = f"{missing}: no {setup.entry} names {source.path}"
-        either = _install_corrections(setup, source.path, start)
         called_at = setup.location(setup.called_at)
+        empty = setup.empty_for([source.path], None)
+        if empty is not None:
+            why = f"the pattern {empty.pattern!r} in {setup.file} matches no file"
+            message = f"{missing}: {why}{why_no_match(owner, empty.pattern)}"
+            called_at = setup.location(empty.at)
+        either = _install_corrections(setup, source.path, start)
         cause = f"{setup.entry} lacks {posixpath.dirname(source.path)}"
         return Mismatch(
             FILE_INSTALLED,

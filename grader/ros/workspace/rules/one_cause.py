@@ -7,7 +7,7 @@ causes: each carries the fix of what is assumed.
 from collections.abc import Iterable, Sequence
 
 from grader.base.problems import Problem
-from grader.ros.installation.package_problems import MESH_PATH
+from grader.ros.installation.package_problems import EMPTY_GLOB, MESH_PATH
 from grader.ros.workspace.rules.rule_table import FILE_INSTALLED
 from grader.ros.xml.xml_problems import MISMATCHED_TAG, RECOVERED
 
@@ -38,6 +38,16 @@ def without_repetitions(
         if problem not in assumed and not is_absent_mesh:
             kept.append(problem)
     return tuple(kept)
+
+
+def without_said_patterns(problems: Sequence[Problem]) -> list[Problem]:
+    """Return problems of packages without patterns of which it is said what they do not install."""
+    said = {problem.related for problem in problems if problem.rule == FILE_INSTALLED.name}
+    return [
+        problem
+        for problem in problems
+        if problem.kind != EMPTY_GLOB or problem.location not in said
+    ]
 
 
 def _repeated_assumptions(problems: Sequence[Problem]) -> list[Problem]:
