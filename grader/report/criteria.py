@@ -444,12 +444,16 @@ def hint_text(entry: Entry, hint: Hint) -> str:
 
     And which criteria have to be looked at after that edit.
     """
-    if entry.first:
+    if entry.first and not hint.fixed_with:
         return f"Fixed by the same edit as {entry.first}."
-    left = [
-        result.criterion.id for result in entry.results if result.criterion.id not in hint.gains
-    ]
-    texts = [hint.message.removesuffix(".")]
+    left, texts = list[str](), [hint.message.removesuffix(".")]
+    for result in entry.results:
+        if result.criterion.id in hint.gains:
+            continue
+        if result.hint is not None and result.hint.fixed_with and result is not entry.result:
+            texts.append(f"{result.criterion.id}: {result.hint.message.removesuffix('.')}")
+        else:
+            left.append(result.criterion.id)
     if left and hint.gains:
         texts.append(f"Then check {enumerated(left, _MAX_CRITERIA)}")
     return sentence(". ".join(texts))

@@ -57,6 +57,7 @@ _MAX_COSTS = 3  # criteria named in a row
 _BAR_WIDTH = 40
 _MAX_MISTAKES, _MAX_CAUSES, _MAX_GROUPS = 10, 3, 20
 _MAX_STEPS = 5  # criteria of a student that changed
+_MANY_EQUAL = 3  # students with equal changes, which are said once
 _TITLES = {
     "carried": "not\ndeducted",
     "marked": "manual\nmark",
@@ -319,13 +320,32 @@ def render_changes(
         page.leave_row()
         students = counted(len(alike_changes), "student")
         page.inset(printable(f"{'; '.join(why)} ({students})"), "bold", 0)
-        for change in alike_changes:
-            steps = list(_changed_grade(change))
-            for step in change.criteria:
-                steps.append(f"{step.id} {_before_and_after(step.before, step.after)}")
-            line = f"{named(change.key, change.name)}: {'; '.join(first_lines(steps, _MAX_STEPS))}"
-            page.inset(printable(line), indent=4, head=Text("  "))
+        for criteria, some in alike(alike_changes, _changed_criteria):
+            _show_equal_changes(criteria, some, page)
     page.print()
+
+
+def _changed_criteria(change: Change) -> str:
+    """Return the criteria whose points changed; of many the first."""
+    steps = [f"{one.id} {_before_and_after(one.before, one.after)}" for one in change.criteria]
+    return "; ".join(first_lines(steps, _MAX_STEPS))
+
+
+def _show_equal_changes(criteria: str, changes: Sequence[Change], page: Page) -> None:
+    """Print the students whose points of criteria changed equally.
+
+    The criteria are said once if these are several students; equal grades are one line.
+    """
+    is_said_once = bool(criteria) and len(changes) >= _MANY_EQUAL
+    indent = INDENT
+    if is_said_once:
+        page.inset(printable(f"{criteria} ({len(changes)} students):"), indent=4, head=Text("  "))
+        indent += INDENT
+    for grade, equal in alike(changes, lambda change: "; ".join(_changed_grade(change))):
+        names = people_text([named(change.key, change.name) for change in equal], len(equal))
+        text = grade if is_said_once or not criteria else f"{grade}; {criteria}"
+        line = printable(f"{names}: {text}")
+        page.inset(line, indent=indent + INDENT, head=Text(" " * indent))
 
 
 def _changed_grade(change: Change) -> Iterator[str]:
@@ -349,6 +369,8 @@ def _changed_grade(change: Change) -> Iterator[str]:
 
 def _without_points(grade: RunGrade) -> str:
     """Return what stands for a grade that has no points."""
+    if grade.obstacle == Reason.PENDING.name:
+        return "manual grading"
     return grade.obstacle.lower().replace("_", " ") or "none"
 
 

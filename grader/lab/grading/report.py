@@ -54,6 +54,7 @@ class Hint(NamedTuple):
     shown_by: str = ""  # the criterion that shows the hint; the others that it fixes name that one
     certainty: Certainty = "preferred"  # whether other edits were proven
     after: tuple[str, ...] = ()  # the criteria whose hints have to be followed first
+    fixed_with: tuple[str, ...] = ()  # the criteria whose hints are enough together
 
 
 class Result(NamedTuple):

@@ -84,11 +84,10 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
             continue  # the message says what is missing, and the student writes it
         with trials.isolated():
             hints[name] = _hint_for(name, found_hint, entries, results, level, submission)
-    if level == "edit":
-        shown_at = {*hints, *entries.values()}
-        others = [results[name] for name in costs if name not in shown_at]
-        with trials.isolated():
-            hints |= _hints_of_others(others, search, entries)
+    shown_at = {*hints, *entries.values()}
+    others = [results[name] for name in costs if name not in shown_at]
+    with trials.isolated():
+        hints |= _hints_of_others(others, search, entries)
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete)
     edits = chain.from_iterable(found_hint.edits for found_hint in _written(search.found))
@@ -125,15 +124,22 @@ def _hint_for(
 def _hints_of_others(
     results: Iterable[Result], search: HintSearch, entries: Mapping[Edits, str]
 ) -> dict[str, Hint]:
-    """Return the hints of criteria that pass only after several edits, which other ones show."""
+    """Return the hints of criteria that pass only after several edits, which other ones show.
+
+    A criterion that costs no more than the first of these is listed below it.
+    """
     hints = {}
     for result in results:
         name = result.criterion.id
         if name in search.results and not search.results[name].is_lost:
             edited = _entries_of(search.edits_needed_for(name), entries)
             if edited:
-                text = f"Make the edits for {enumerated(edited, MAX_IN_HINT)}."
-                hints[name] = Hint(text, result.outcome.location or Location("", 1, 1), {})
+                text = f"Fixed with {enumerated(edited, MAX_IN_HINT)}."
+                at = result.outcome.location or Location("", 1, 1)
+                first = search.results[edited[0]].criterion
+                is_below = result.criterion.points <= first.points
+                shown_by = first.id if is_below else ""
+                hints[name] = Hint(text, at, {}, shown_by=shown_by, fixed_with=edited)
     return hints
 
 
