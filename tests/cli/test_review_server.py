@@ -60,7 +60,7 @@ def test_an_item(review: Review, book: Path) -> None:
         "Because of the roots.",
         "In <code>answers.md, line 1 in anna</code>",
         "The answer in answers.md",
-        "6 of 11 points so far; 5 left to grade",
+        "6 of 11 points so far; 5 points need manual grading",
     ):
         assert text in found.text, text
     assert str(book.parent) not in found.text
@@ -444,7 +444,7 @@ def test_the_command(book: Path, ending: signal.Signals) -> None:
         (book / "grades.csv").unlink()
         process.send_signal(ending)
         out, err = process.communicate(timeout=HANG_TIMEOUT)
-    assert (process.returncode, out) == (0, "1 marked, 2 left\n")
+    assert (process.returncode, out) == (0, "1 marked, 2 still need manual grading\n")
     assert f"grader: {book}/marks/kim.csv is open in LibreOffice: close it" in err
     assert err.endswith(
         "grader: open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept\n"

@@ -278,7 +278,7 @@ def test_names_that_lead_out(ending: str, name: str) -> None:
     tree = tree_of(MAKERS[ending]({name: b"evil", "b.urdf": ROBOT}))
     assert list(tree.files) == ["b.urdf"]
     assert tuple(map(str, tree.ignored)) == (
-        f"{name} has a name that leads out of the archive, and was not read",
+        f"{name!r} has a name that leads out of the archive, and was not read",
     )
 
 
@@ -298,14 +298,14 @@ def test_links_are_not_followed(ending: str, target: str) -> None:
     """A link is ignored and named, and may hide what is to be graded; nothing else is lost."""
     tree = tree_of(MAKERS[ending](FILES, [LinkMember("link", target)]))
     assert list(tree.files) == ["my_robot/package.xml", URDF]
-    assert tuple(map(str, tree.unopened)) == ("link is a symlink, and was not followed",)
+    assert tuple(map(str, tree.unopened)) == ("'link' is a symlink, and was not followed",)
     assert "link" in tree.unseen
 
 
 def test_hard_links_are_not_followed() -> None:
     """A hard link in a tar is ignored and named."""
     tree = tree_of(make_tar(FILES, [LinkMember("copy.urdf", URDF, is_hard=True)]))
-    assert tuple(map(str, tree.unopened)) == ("copy.urdf is a symlink, and was not followed",)
+    assert tuple(map(str, tree.unopened)) == ("'copy.urdf' is a symlink, and was not followed",)
 
 
 @pytest.mark.parametrize("kind", [tarfile.CHRTYPE, tarfile.BLKTYPE, tarfile.FIFOTYPE])
@@ -317,7 +317,7 @@ def test_devices_in_tars(kind: bytes) -> None:
 
     tree = tree_of(make_tar({"device": b"", "a.urdf": ROBOT}, change=change))
     assert list(tree.files) == ["a.urdf"]
-    assert tuple(map(str, tree.ignored)) == ("device is not a regular file, and was not read",)
+    assert tuple(map(str, tree.ignored)) == ("'device' is not a regular file, and was not read",)
 
 
 def test_devices_in_zips() -> None:
@@ -336,7 +336,7 @@ def test_devices_in_zips() -> None:
             archive.writestr(info, b"a")
     tree = tree_of(data.getvalue())
     assert list(tree.files) == ["bits", "none", "plain"]
-    assert [line.split()[0] for line in map(str, tree.ignored)] == ["device", "fifo"]
+    assert [line.split()[0] for line in map(str, tree.ignored)] == ["'device'", "'fifo'"]
 
 
 def test_encrypted_members() -> None:
@@ -345,8 +345,8 @@ def test_encrypted_members() -> None:
     tree = tree_of(data)
     assert tree.files == {}
     assert tuple(map(str, tree.ignored)) == (
-        "a.urdf is encrypted, and was not read",
-        "l is encrypted, and was not read",
+        "'a.urdf' is encrypted, and was not read",
+        "'l' is encrypted, and was not read",
     )
 
 
@@ -362,7 +362,7 @@ def test_unsupported_compressions(method: int) -> None:
     tree = tree_of(data)
     assert tree.files == {}
     assert tuple(map(str, tree.ignored)) == (
-        "a.urdf is compressed with a method other than deflate, and was not read",
+        "'a.urdf' is compressed with a method other than deflate, and was not read",
     )
 
 
@@ -609,7 +609,7 @@ def test_long_names_in_tars() -> None:
     tree = tree_of(make_tar({"a" * 100_000: b"", "b.urdf": ROBOT}))
     assert list(tree.files) == ["b.urdf"]
     assert tuple(map(str, tree.ignored)) == (
-        f"{'a' * 40}... has a name that is too long, and was not read",
+        f"'{'a' * 40}...' has a name that is too long, and was not read",
     )
     names = header(b"././@LongLink", b"00000000001", b"L") + b"a".ljust(512, b"\0")
     with limited_work(300_000):
@@ -625,7 +625,7 @@ def test_sparse_files_in_tars() -> None:
     head[148:156] = f"{sum(head):06o}\0 ".encode()
     tree = tree_of(bytes(head) + bytes(1024))
     assert tuple(map(str, tree.ignored)) == (
-        "a.urdf (1099512 MB) is larger than 64 MiB, the limit for one file, and was ignored",
+        "'a.urdf' (1099512 MB) is larger than 64 MiB, the limit for one file, and was ignored",
     )
     with pytest.raises(InputError, match="limit for one file"):
         tree.files["a.urdf"].read(10, first=True)
@@ -719,11 +719,11 @@ def test_damaged_archives_in_a_folder(tmp_path: Path) -> None:
     assert tree is not None
     assert f"d.tar.gz/{URDF}" in tree.files
     assert [line.split()[0] for line in map(str, tree.ignored)] == [
-        "a.zip",
-        "b.rar",
-        "c.zip",
-        "e.zip",
-        "f.csv.gz",
+        "'a.zip'",
+        "'b.rar'",
+        "'c.zip'",
+        "'e.zip'",
+        "'f.csv.gz'",
     ]
     assert all("\n" not in line for line in map(str, tree.ignored))
 
@@ -793,7 +793,7 @@ def test_symlinks_in_folders(home: Path) -> None:
     tree = read_folder(home)
     assert list(tree.files) == [URDF]
     assert tuple(map(str, tree.unopened)) == tuple(
-        f"{name} is a symlink, and was not followed" for name in links
+        f"{name!r} is a symlink, and was not followed" for name in links
     )
     assert links.keys() <= tree.unseen
 
@@ -807,7 +807,7 @@ def test_special_files(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         tree = read_folder(home)
     assert list(tree.files) == [URDF]
     assert tuple(map(str, tree.ignored)) == tuple(
-        f"{name} is not a regular file, and was not read" for name in ("fifo", "socket")
+        f"{name!r} is not a regular file, and was not read" for name in ("fifo", "socket")
     )
 
 
@@ -863,7 +863,7 @@ def test_folders_that_cannot_be_opened(home: Path, monkeypatch: pytest.MonkeyPat
     tree = read_folder(home)
     assert list(tree.files) == [URDF]
     assert tuple(map(str, tree.ignored)) == (
-        "my_robot/meshes is a folder that cannot be opened: Permission denied",
+        "'my_robot/meshes' is a folder that cannot be opened: Permission denied",
     )
     closed = ["lab6"]
     with pytest.raises(InputError, match=r"cannot read .*lab6: Permission denied"):
