@@ -2,6 +2,7 @@
 
 import pytest
 
+from grader.base.source import Source
 from grader.files.tree import make_tree, overlaid
 from grader.ros.nodes.python.package_slips import package_slips
 from grader.ros.package.entry_points import entry_fault
@@ -102,7 +103,7 @@ def test_a_function_that_is_surely_meant_is_read(
         [edit] = slip.edits
         assert slip.is_refused
         assert meant is not None
-        start = package.installation.source.offset(edit.line, edit.column)
+        start = Source("setup.py", text).offset(edit.line, edit.column)
         assert text[:start] + edit.new + text[start + len(edit.old) :] == _SETUP % meant
         break
     else:

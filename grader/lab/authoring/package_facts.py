@@ -686,7 +686,8 @@ def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator
             verb, kind = _OPENING.get(end.kind), end.type
             if bridged is None and end.kind == "subscription":
                 verb = "subscribes"
-            if verb is not None and kind is not None and end.name and end.is_known:
+            is_named = bool(end.name) and end.is_known and not end.endpoint.is_unused
+            if verb is not None and kind is not None and is_named:
                 asked[verb][end.name] = kind.replace(".", "/")
     for topic in asked["publishes"]:
         asked["subscribes"].pop(topic, None)

@@ -318,6 +318,7 @@ class _NodeTopic(NamedTuple):
     location: Location
     node: "StartedNode"
     written: str = ""  # its name in the code, before remapping
+    is_unused: bool = False
 
 
 class _NodeTopics:
@@ -345,9 +346,9 @@ class _NodeTopics:
                 self._is_open = self._is_open or not end.is_known
                 name = end.name or "" if end.is_known else ""
                 verb, opened = _VERBS[end.endpoint.kind], end.endpoint
-                self._topics.append(
-                    _NodeTopic(name, verb, opened.type, opened.location, node, opened.name or "")
-                )
+                topic = _NodeTopic(name, verb, opened.type, opened.location, node)
+                topic = topic._replace(written=opened.name or "", is_unused=opened.is_unused)
+                self._topics.append(topic)
 
     def _may_run(self, node: "StartedNode", workspace: "Workspace", package: str) -> bool:
         """Return whether a node is read and may run; note why not, and what is not known of it."""
@@ -375,17 +376,17 @@ class _NodeTopics:
         full_name = f"/{name.removeprefix('/')}"
         python_type = re.sub("[/:]+", ".", message_type)
         of_kind = [topic for topic in self._topics if topic.verb == verb]
-        same = [topic for topic in of_kind if topic.name == full_name]
+        named = [topic for topic in of_kind if topic.name == full_name]
+        unused = [topic for topic in named if topic.is_unused and python_type in (topic.type, "")]
+        same = [topic for topic in named if topic not in unused]
         for topic in same:
             if topic.node.when and python_type in (topic.type, ""):
                 return None
         if self._is_open or any(topic.type in (None, python_type) for topic in same):
             typed = f" with {message_type}" if message_type else ""
             return Fault(f"a node {verb} {full_name}{typed}", is_certain=False)
-        if same:
-            shown = (same[0].type or "").replace(".", "/")
-            message = f"a node {verb} {full_name} with {shown}; it should be {message_type}"
-            return Fault(message, same[0].location, cause="type")
+        if same or unused:
+            return _fault_of_other(same, unused, message_type)
         if self._unread:
             return self._unread[0]
         for topic in of_kind:
@@ -394,6 +395,20 @@ class _NodeTopics:
                 detail = f": line {place.line} of {place.path} remaps it to {topic.name}"
                 return Fault(f"no node {verb} {full_name}", place, detail, cause="topic")
         return _find_similar_topic(f"no node {verb} {full_name}", full_name, of_kind)
+
+
+def _fault_of_other(
+    same: Sequence[_NodeTopic], unused: Sequence[_NodeTopic], message_type: str
+) -> Fault:
+    """Return that a topic of the wanted name has another type, or an unused publisher."""
+    if unused:
+        [topic, *_] = unused
+        message = f"a node opens a publisher of {topic.name}, and its code never uses it"
+        return Fault(message, topic.location, cause="topic")
+    [topic, *_] = same
+    shown = (topic.type or "").replace(".", "/")
+    message = f"a node {topic.verb} {topic.name} with {shown}; it should be {message_type}"
+    return Fault(message, topic.location, cause="type")
 
 
 def _find_similar_topic(message: str, full_name: str, topics: Sequence[_NodeTopic]) -> Fault:

@@ -173,7 +173,8 @@ class _Readings:
 
 def _correction_text(slips: Iterable[Slip]) -> str:
     assumed = [f"{slip.assumption} (line {slip.location.line})" for slip in slips]
-    return f"The rest is graded with this correction: {enumerated(assumed, _MAX_NAMED)}"
+    each_once = [*dict.fromkeys(assumed)]
+    return f"The rest is graded with this correction: {enumerated(each_once, _MAX_NAMED)}"
 
 
 def problems_as_meant(problems: Iterable[Problem], meant: Meant) -> Iterator[Problem]:

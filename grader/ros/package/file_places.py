@@ -300,10 +300,20 @@ def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> FilePlace |
     return None
 
 
+def _installing_line(owner: Package, target: str) -> str:
+    """Return the line of the build file that installs a file, for the end of a sentence."""
+    setup = owner.installation
+    for copy in setup.copies if setup is not None else ():
+        if copy.target == target and setup is not None:
+            return f" ({setup.file}:{copy.at.line})"
+    return ""
+
+
 def _place_not_there(owner: Package, target: str, lookup: Lookup, file: "NamedFile") -> FilePlace:
     """Return where else a build installs a file, or what the package has instead of it."""
     message = f"the launch file looks for the {_WORDS[file.purpose]} at {target}, but {lookup.text}"
     if lookup.state == "elsewhere":
+        message += _installing_line(owner, lookup.path)
         # Outside of the package's folder, at the path where the launch file looks in it: that is
         # the fault of setup.py.
         is_at_path = f"/{lookup.path}".endswith(f"/{target.removeprefix(owner.share)}")

@@ -53,9 +53,7 @@ def _instead(owner: Package, target: str) -> Lookup:
     if not sources:  # builds may install a file under another name
         elsewhere = next((path for path in owner.installed if posixpath.basename(path) == name), "")
     if elsewhere:
-        return Lookup(
-            "elsewhere", elsewhere, f"a build installs it as {_with_place(owner, elsewhere)}"
-        )
+        return Lookup("elsewhere", elsewhere, f"a build installs it as {elsewhere}")
     if not sources:
         return Lookup("absent", text=f"the package has no file {name!r}")
     text = f"a build does not install {sources[0]}"
@@ -63,15 +61,6 @@ def _instead(owner: Package, target: str) -> Lookup:
         if posixpath.basename(source) == name:
             return Lookup("not installed", sources[0], f"{text}; it installs {source} as {path}")
     return Lookup("not installed", sources[0], text)
-
-
-def _with_place(owner: Package, target: str) -> str:
-    """Return a path below the prefix with the line that installs a file there."""
-    copies = owner.installation.copies if owner.installation is not None else ()
-    for copy in copies:
-        if copy.target == target and owner.installation is not None:
-            return f"{target} ({owner.installation.file}:{copy.at.line})"
-    return target
 
 
 def _meant_by(owner: Package, target: str) -> list[str]:

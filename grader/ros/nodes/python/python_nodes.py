@@ -53,6 +53,7 @@ from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
 from grader.ros.nodes.python.node_slips import Program as StartedProgram
 from grader.ros.nodes.python.node_slips import node_slips
 from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
+from grader.ros.nodes.python.unused_publishers import unused_publishers
 from grader.ros.package.entry_points import (
     entry_as_meant,
     entry_points,
@@ -180,6 +181,9 @@ def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
     for module in modules.values():
         classes |= module.own_classes()
     nodes = with_inherited(nodes, classes, _OPTIONS)
+    if not unread:
+        unused = unused_publishers(module.text().code for module in modules.values())
+        nodes = [_with_unused(node, unused) for node in nodes]
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
     programs = []
     for program in _programs(package, modules, nodes, reads_meant=reads_meant):
@@ -187,6 +191,17 @@ def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
         programs.append(read)
         doubts += doubts_of_program
     return _joined_nodes(modules.values(), nodes, programs, doubts, package.releases)
+
+
+def _with_unused(node: NodeFacts, unused: Collection[Location]) -> NodeFacts:
+    """Return a node whose publishers at some places are not used."""
+    if not unused:
+        return node
+    endpoints = []
+    for endpoint in node.endpoints:
+        is_unused = endpoint.kind == "publisher" and endpoint.location in unused
+        endpoints.append(endpoint._replace(is_unused=is_unused))
+    return node._replace(endpoints=tuple(endpoints))
 
 
 def _without_stopped(
