@@ -57,7 +57,7 @@ _NO_ARGUMENT = _error("REF005", "Argument that nothing declares")
 _NO_PROGRAM = _error("REF006", "Program, entry point or node that does not exist")
 _NO_TOPIC = _error("REF007", "Topic with another name, type or quality of service")
 _NO_DEPENDENCY = _warning("REF008", "Package that package.xml does not declare")
-_SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
+_SIMILAR = _warning("REF009", "Name, type or file that may be wrong")
 _UNUSED = _warning("REF010", "File that no other file names")
 _OTHER_RELEASE = _warning("REF011", "Name of another release of ROS 2")
 _UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
@@ -94,6 +94,7 @@ _NO_BUILD = _warning("REF040", "Package that colcon does not build")
 _UNREAD = Kind(
     "REF041", "Parameter or argument that nothing reads", severity="note", effect="other"
 )
+_LENT = _warning("REF042", "Package that package.xml declares only indirectly")
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -423,7 +424,7 @@ DEPENDENCY_DECLARED = Rule(
     "dependency-declared",
     "dependencies",
     _NO_DEPENDENCY,
-    _SIMILAR,
+    _LENT,
     "package.xml declares the packages that the files of the package use.",
 )
 BUILD_ORDER = _rules_of("dependencies", _BUILT_LATER)(
