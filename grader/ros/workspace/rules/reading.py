@@ -34,6 +34,7 @@ from grader.ros.workspace.rules.listed_plugins import listed_plugin_facts
 from grader.ros.workspace.rules.looked_up_transforms import lookup_facts
 from grader.ros.workspace.rules.mass_values import mass_facts
 from grader.ros.workspace.rules.meeting_ends import meeting_facts
+from grader.ros.workspace.rules.message_stamps import message_stamp_facts
 from grader.ros.workspace.rules.mimic_interfaces import mimic_facts
 from grader.ros.workspace.rules.missing_ends import missing_end_facts
 from grader.ros.workspace.rules.moveit import moveit_facts
@@ -114,6 +115,7 @@ _READERS = (
     topic_wiring_facts,
     unmet_topic_facts,
     received_message_facts,
+    message_stamp_facts,
     gain_facts,
     known_end_facts,
     provision_facts,

@@ -718,6 +718,9 @@ _message = _rules_of("messages", _NO_MESSAGE)
 MESSAGE_HEADER = _message(
     "message-header", sentence="The messages of a filter or synchroniser have a header."
 )
+MESSAGE_STAMP = _message(
+    "message-stamp", sentence="Messages and transforms have a stamp where what reads them needs it."
+)
 MESSAGE_DEPTH = _message("message-depth", sentence="A publisher or subscription keeps messages.")
 IMAGE_ENCODING = _message(
     "image-encoding", sentence="cv_bridge converts the images of a topic to the asked encoding."
