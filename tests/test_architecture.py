@@ -145,10 +145,10 @@ ROOMS_WITH_WEIGHTS = ("ros", "lab")  # the other packages have one limit each
 WEIGHTS = {
     "app": 48_950,  # the baseline of an inspection; the process that reads for an editor, and the one that replaces it; rounds of --watch that fit a terminal; what an editor gets while a file is typed; renames that prove that no use is left, outputs that are pasted, links and folding
     "base": 18_500,  # a problem has its fixes; edits of tags, which were in lab.hints; functions that do one thing
-    "classroom": 70_400,  # functions of complexity at most 10
+    "classroom": 70_900,  # the deadline of a student beside what Moodle measured; marks that a changed submission outdates; functions of complexity at most 10
     "files": 12_350,  # the end of a log, from a file, a folder or a pipe
     "lab": 100,
-    "lab.authoring": 47_500,  # other ways to give nodes parameters, names and programs; points by the mean; what passed arguments do; functions of complexity at most 10; what nodes look up, spawners start and worlds have, details as comments
+    "lab.authoring": 48_400,  # callbacks with other parameters, and classes for instances; other ways to give nodes parameters, names and programs; points by the mean; what passed arguments do; functions of complexity at most 10; what nodes look up, spawners start and worlds have, details as comments
     "lab.checks": 51_500,  # what a command or a condition may do; the poses of transforms; parameters that are set; components among nodes; functions of complexity at most 10; what connects in the graph of what is launched
     "lab.documents": 10_900,
     "lab.grading": 13_000,  # what hides the base
@@ -162,11 +162,11 @@ WEIGHTS = {
     "ros.installation": 33_050,  # dependencies of package.xml with their tags; the packages that CMake finds, tests, expressions that are not closed; names of program files, targets of tests and of other projects; what stops a build from a release on; functions for what was branches of long ones
     "ros.interfaces": 4_400,  # since and until when there is a type; functions for the checks of one default
     "ros.known": 10_400,  # launch arguments that name topics and files of included launch files; keys of libraries, elements of Gazebo Classic; the packages that are released; when each table was read, and the last release that was read for it; rows of what programs open, for graphs
-    "ros.launch": 46_200,  # substitutions of Nav2 and changes of the environment; what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
+    "ros.launch": 46_500,  # the names that ROS 2 accepts; substitutions of Nav2 and changes of the environment; what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
     "ros.log": 3_800,
     "ros.mesh": 4_300,
-    "ros.nodes": 66_600,  # poses by other names; ends of goals in C++ and with other statements; the poses of transforms that code sends; the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions; fields of transforms of C++ read once
-    "ros.package": 28_050,  # interface packages that a target does not link; the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
+    "ros.nodes": 74_200,  # parameters of callbacks, refused arguments and responses, what constructors use too early, nodes that nothing spins; base classes of the package; publishers that are not used; poses by other names; ends of goals in C++ and with other statements; the poses of transforms that code sends; the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions; fields of transforms of C++ read once
+    "ros.package": 28_250,  # the line that installs a file elsewhere; interface packages that a target does not link; the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
     "ros.python": 30_000,  # names that branches lack; walking over its syntax in half the time; branches that only set the environment; the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
