@@ -146,9 +146,9 @@ WEIGHTS = {
     "app": 49_200,  # a running inspection: --watch, editors and renames
     "base": 18_500,  # problems have their fixes, with the edits of tags
     "classroom": 71_350,  # functions of complexity at most 10
-    "files": 12_350,  # the end of a log is read from a file, a folder or a pipe
+    "files": 12_350,  # the end of a log, from a file, a folder or a pipe
     "lab": 100,
-    "lab.authoring": 48_350,  # drafts ask about nodes and graphs, and give points by the mean
+    "lab.authoring": 48_400,  # drafts ask about nodes and graphs, and give points by the mean
     "lab.checks": 51_750,  # checks of the graph of what is launched
     "lab.documents": 10_900,
     "lab.grading": 13_000,  # what hides the base
@@ -165,7 +165,7 @@ WEIGHTS = {
     "ros.launch": 47_450,  # the words of Lyrical, components, and what follows an error
     "ros.log": 4_050,  # names of findings beside their lines, and what keeps a started robot from being read
     "ros.mesh": 4_300,
-    "ros.nodes": 74_050,  # transforms, actions and calls in Python and C++
+    "ros.nodes": 74_200,  # transforms, actions and calls in Python and C++
     "ros.package": 28_350,  # fixes of files that cannot be read
     "ros.python": 30_000,  # branches, and constants of classes
     "ros.slips": 7_800,  # slips are proven by reading the robot again

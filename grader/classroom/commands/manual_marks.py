@@ -33,7 +33,6 @@ from grader.classroom.marks.marks import (
     mark_file,
     marked_name,
 )
-from grader.classroom.roster.lateness import Lateness
 from grader.classroom.tables import SIZE_LIMIT
 from grader.files.reading import read_capped
 from grader.lab.rubric.criterion import DEADLINE, GRADE
@@ -61,16 +60,12 @@ def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
     for line in _warnings(book, mark):
         warn(printable(line))
     grade = now.grade(mark.student)
-    if mark.criterion == DEADLINE and mark.value != WITHDRAWN and _is_without_effect(grade.late):
+    is_deadline = mark.criterion == DEADLINE and mark.value != WITHDRAWN
+    if is_deadline and grade.late.days and not grade.late.is_timed:
         warn(_NO_TIME)
     late = f"; {grade.late.reason}" if mark.criterion == DEADLINE and grade.late.reason else ""
     line = f"{named(mark.student, grade.student.name)}: {_grade_text(now, grade)}{late}"
     return f"{printable(line)}\n"
-
-
-def _is_without_effect(late: Lateness) -> bool:
-    """Return whether a deadline of the student changes nothing, because no time is known."""
-    return late.days > 0 and not late.is_timed
 
 
 def mark_missing(gradebook: Path, row: Cells, warn: Warn) -> str:

@@ -9,7 +9,6 @@ from grader.base.source import Location, Source
 from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import CMAKE
-from grader.ros.python.constants import last_name
 from grader.ros.python.python_file import PythonFile
 from grader.ros.workspace.rules.rule_table import Family
 
@@ -169,23 +168,33 @@ def _parameter_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
     """
     functions = {node.name: node for node in file.nodes if isinstance(node, ast.FunctionDef)}
     for node in file.nodes:
-        if not isinstance(node, ast.Call) or last_name(node.func) not in _CALLBACKS:
-            continue
-        called = last_name(node.func)
-        for given in node.args[_CALLBACKS[called] :][:1]:
-            function = functions.get(last_name(given))
-            if function is None or function.decorator_list:
+        match node:
+            case ast.Call(func=ast.Attribute(attr=called) | ast.Name(id=called), args=given):
+                callbacks = given[_CALLBACKS[called] :][:1] if called in _CALLBACKS else []
+            case _:
                 continue
-            given_self = isinstance(given, ast.Attribute)
-            names = function.args.args
-            if not names or function.args.defaults or function.args.vararg:
-                continue
-            place, (_, end) = f"{label} {function.name}", file.span(names[-1])
-            if called != "create_subscription":
-                yield MutantEdit("callback parameter added", place, end, end, ", event")
-            if len(names) > given_self and len(names) > 1:
-                start = file.span(names[-2])[1]
-                yield MutantEdit("callback parameter removed", place, start, end, "")
+        for callback in callbacks:
+            is_method = isinstance(callback, ast.Attribute)
+            name = getattr(callback, "attr", getattr(callback, "id", ""))
+            if name in functions:
+                places = _parameter_places(file, functions[name], is_method=is_method)
+                for family, start, end, new in places:
+                    if called != "create_subscription" or not new:
+                        yield MutantEdit(family, f"{label} {name}", start, end, new)
+
+
+def _parameter_places(
+    file: PythonFile, function: ast.FunctionDef, *, is_method: bool
+) -> Iterator[tuple[str, int, int, str]]:
+    """Yield the changes of the parameters of a callback that takes a fixed number."""
+    parameters = function.args
+    names = parameters.args
+    if function.decorator_list or parameters.defaults or parameters.vararg or not names:
+        return
+    _, end = file.span(names[-1])
+    yield "callback parameter added", end, end, ", event"
+    if len(names) > max(is_method, 1):
+        yield "callback parameter removed", file.span(names[-2])[1], end, ""
 
 
 def _instance_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:

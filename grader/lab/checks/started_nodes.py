@@ -376,9 +376,7 @@ class _NodeTopics:
         full_name = f"/{name.removeprefix('/')}"
         python_type = re.sub("[/:]+", ".", message_type)
         of_kind = [topic for topic in self._topics if topic.verb == verb]
-        named = [topic for topic in of_kind if topic.name == full_name]
-        unused = [topic for topic in named if topic.is_unused and python_type in (topic.type, "")]
-        same = [topic for topic in named if topic not in unused]
+        same, unused = _split_unused(of_kind, full_name, python_type)
         for topic in same:
             if topic.node.when and python_type in (topic.type, ""):
                 return None
@@ -395,6 +393,21 @@ class _NodeTopics:
                 detail = f": line {place.line} of {place.path} remaps it to {topic.name}"
                 return Fault(f"no node {verb} {full_name}", place, detail, cause="topic")
         return _find_similar_topic(f"no node {verb} {full_name}", full_name, of_kind)
+
+
+def _split_unused(
+    topics: Sequence[_NodeTopic], name: str, python_type: str
+) -> tuple[list[_NodeTopic], list[_NodeTopic]]:
+    """Return the topics of a name, and apart from them publishers of a type that are not used."""
+    same, unused = [], []
+    for topic in topics:
+        if topic.name != name:
+            continue
+        if topic.is_unused and python_type in (topic.type, ""):
+            unused.append(topic)
+        else:
+            same.append(topic)
+    return same, unused
 
 
 def _fault_of_other(

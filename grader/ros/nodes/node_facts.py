@@ -115,10 +115,11 @@ class Timer(NamedTuple):
 
 
 class Doubt(NamedTuple):
-    """What may declare or open more, and where."""
+    """What may declare or open more, and where; `of` says what has to be known to settle it."""
 
     reason: str
     location: Location
+    of: Literal["", "base class", "more arguments"] = ""
 
 
 class TypeImport(NamedTuple):

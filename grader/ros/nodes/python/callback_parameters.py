@@ -17,10 +17,14 @@ from grader.ros.python.constants import dotted, last_name
 from grader.ros.python.parse import Code, location_in, own_nodes, position_of
 from grader.ros.python.walking import walk
 
-Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+_Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
 
+<<<<<<< HEAD
 class _CalledBack(NamedTuple):
+=======
+class _CallbackRow(NamedTuple):
+>>>>>>> s12-b
     """A parameter that is given a callback, and what that is called with.
 
     `most` is greater than `given` where rclpy gives another argument to who takes it.
@@ -35,6 +39,7 @@ class _CalledBack(NamedTuple):
 
 # rclpy/{node,subscription,executors,service,client}.py, rclpy/action/{server,client}.py and
 # rclpy/task.py of ros2/rclpy, from Humble to Rolling.
+<<<<<<< HEAD
 _CALLBACKS: Mapping[str, Sequence[_CalledBack]] = {
     "create_timer": [_CalledBack(1, "callback", 0, "")],
     "create_subscription": [_CalledBack(2, "callback", 1, "the message", 2)],
@@ -50,6 +55,23 @@ _CALLBACKS: Mapping[str, Sequence[_CalledBack]] = {
     "add_on_set_parameters_callback": [_CalledBack(0, "callback", 1, "the list of parameters")],
     "add_pre_set_parameters_callback": [_CalledBack(0, "callback", 1, "the list of parameters")],
     "add_post_set_parameters_callback": [_CalledBack(0, "callback", 1, "the list of parameters")],
+=======
+_CALLBACKS: Mapping[str, Sequence[_CallbackRow]] = {
+    "create_timer": [_CallbackRow(1, "callback", 0, "")],
+    "create_subscription": [_CallbackRow(2, "callback", 1, "the message", 2)],
+    "create_service": [_CallbackRow(2, "callback", 2, "the request and the response")],
+    "ActionServer": [
+        _CallbackRow(3, "execute_callback", 1, "the handle of the goal"),
+        _CallbackRow(None, "goal_callback", 1, "the goal"),
+        _CallbackRow(None, "cancel_callback", 1, "the handle of the goal"),
+        _CallbackRow(None, "handle_accepted_callback", 1, "the handle of the goal"),
+    ],
+    "send_goal_async": [_CallbackRow(1, "feedback_callback", 1, "the feedback")],
+    "add_done_callback": [_CallbackRow(0, "callback", 1, "the future")],
+    "add_on_set_parameters_callback": [_CallbackRow(0, "callback", 1, "the list of parameters")],
+    "add_pre_set_parameters_callback": [_CallbackRow(0, "callback", 1, "the list of parameters")],
+    "add_post_set_parameters_callback": [_CallbackRow(0, "callback", 1, "the list of parameters")],
+>>>>>>> s12-b
 }
 _TIMER_INFO = "TimerInfo"  # which rclpy gives by name to the parameter that has it as annotation
 
@@ -111,7 +133,11 @@ def _faults_of(
         )
 
 
+<<<<<<< HEAD
 def _may_be_called(callback: _CalledBack, least: float, most: float) -> bool:
+=======
+def _may_be_called(callback: _CallbackRow, least: float, most: float) -> bool:
+>>>>>>> s12-b
     counts = range(callback.given, max(callback.given, callback.most) + 1)
     return any(least <= count <= most for count in counts)
 
@@ -130,7 +156,7 @@ def _say_parameters(least: float, most: float, *, is_method: bool) -> str:
     return f"{int(least)} to {int(most)} arguments{besides}"
 
 
-def _count_parameters(function: Function, *, is_method: bool) -> tuple[float, float]:
+def _count_parameters(function: _Function, *, is_method: bool) -> tuple[float, float]:
     """Return how many arguments without names a function takes at least and at most.
 
     Nothing is enough for one with a parameter that must be given by its name.
@@ -145,7 +171,7 @@ def _count_parameters(function: Function, *, is_method: bool) -> tuple[float, fl
     return least, most
 
 
-def _is_given_time(called: str, function: Function, code: Code) -> bool:
+def _is_given_time(called: str, function: _Function, code: Code) -> bool:
     """Return whether the callback of a timer may be given when it is called.
 
     It is by name, in the parameter whose annotation says so, from Jazzy on.
@@ -158,7 +184,7 @@ def _is_given_time(called: str, function: Function, code: Code) -> bool:
 
 def _find_function(
     code: Code, part: CodePart, given: ast.expr, classes: Mapping[Location | None, CallbackClass]
-) -> Function | None:
+) -> _Function | None:
     """Return the function that an expression surely is; None if that is not known."""
     if isinstance(given, ast.Lambda):
         return given
@@ -177,7 +203,7 @@ def _find_function(
     return _only_function(_functions_named(body, name), body)
 
 
-def _find_method(owner: CallbackClass, name: str) -> Function | None:
+def _find_method(owner: CallbackClass, name: str) -> _Function | None:
     """Return the method that an attribute of self surely is."""
     if owner.node.decorator_list or owner.node.keywords or name in owner.replaced:
         return None
@@ -203,7 +229,7 @@ def _functions_named(nodes: Sequence[ast.AST], name: str) -> list[ast.AST]:
     return binding
 
 
-def _only_function(binding: Sequence[ast.AST], body: Sequence[ast.AST]) -> Function | None:
+def _only_function(binding: Sequence[ast.AST], body: Sequence[ast.AST]) -> _Function | None:
     """Return what binds a name if it is one function without decorators in a body."""
     if len(binding) != 1 or binding[0] not in body:
         return None

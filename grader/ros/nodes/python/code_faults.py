@@ -620,10 +620,8 @@ class _Search:
         else runs beside it.
         """
         unreached = self._nodes_in_callbacks()
-        has_others = any(
-            not _BESIDE.isdisjoint(imported.partition(".")[0] for imported in module.imports)
-            for module in modules
-        )
+        imported = {name.partition(".")[0] for module in modules for name in module.imports}
+        has_others = not _BESIDE.isdisjoint(imported)
         for module in modules:
             for node in every_node(module.code.tree):
                 if not isinstance(node, ast.While) or node in unreached:
@@ -787,12 +785,7 @@ def _no_response(value: ast.expr, function: ast.FunctionDef | ast.AsyncFunctionD
 
     It is a literal or a comparison, the request, or a field of the response.
     """
-    names = [parameter.arg for parameter in function.args.args if parameter.arg != "self"]
-    bound = Counter[str]()
-    for node in walk(function):
-        if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
-            bound[node.id] += 1
-    is_plain = len(names) == 2 and not any(bound[name] for name in names)
+    request, response = _unbound_parameters(function)
     match value:
         case ast.Constant(value=None):
             return ""
@@ -800,11 +793,25 @@ def _no_response(value: ast.expr, function: ast.FunctionDef | ast.AsyncFunctionD
             return cut(ast.unparse(value), _MAX_SHOWN)
         case ast.Compare() | ast.UnaryOp(op=ast.Not()):
             return cut(ast.unparse(value), _MAX_SHOWN)
-        case ast.Name(id=name) if is_plain and name == names[0]:
+        case ast.Name(id=name) if name == request:
             return f"{name}, the request,"
-        case ast.Attribute(value=ast.Name(id=name)) if is_plain and name == names[1]:
+        case ast.Attribute(value=ast.Name(id=name)) if name == response:
             return dotted(value)
     return ""
+
+
+def _unbound_parameters(
+    function: ast.FunctionDef | ast.AsyncFunctionDef,
+) -> tuple[str | None, str | None]:
+    """Return the request and the response of a callback; None for both if it binds one anew."""
+    names = [parameter.arg for parameter in function.args.args]
+    if names[:1] == ["self"]:
+        names = names[1:]
+    for node in walk(function):
+        is_bound = isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load)
+        if is_bound and getattr(node, "id", "") in names:
+            return None, None
+    return (names[0], names[1]) if len(names) == 2 else (None, None)
 
 
 def _is_generator(function: ast.AST) -> bool:

@@ -8,6 +8,7 @@ import ast
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from grader.base.source import Location
 from grader.ros.nodes.message_uses import given_argument
 from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.nodes.python.called_functions import methods_of
@@ -17,8 +18,6 @@ from grader.ros.python.parse import own_nodes
 from grader.ros.python.values import Value
 from grader.ros.python.walking import walk
 
-OTHER_BASE = "what another base class does is not added"
-MORE_ARGUMENTS = "more arguments of its Node"
 _MAX_DEPTH = 8  # of classes derived from each other
 
 
@@ -68,35 +67,62 @@ def _joined(
     chain = _base_classes(node.class_name, classes)
     if len(chain) < 2 or any(name not in by_name for name in chain):
         return None
-    facts = [by_name[name] for name in chain]
-    for index, derived in enumerate(chain[:-1]):
-        bases = [*zip(chain[index + 1 :], facts[index + 1 :], strict=True)]
-        if any(_replaces(classes[derived], classes[base], of_base) for base, of_base in bases):
-            return None
-    constructors: list[_Constructor] = []
-    for name in chain:
-        if "__init__" not in methods_of(classes[name].node):
-            continue  # that of the base is called
-        constructor = _constructor_of(classes[name])
-        if constructor is None:
-            return None
-        constructors.append(constructor)
-    if not constructors:
+    constructors = _constructors_of([classes[name] for name in chain])
+    if not constructors or _is_any_replaced(chain, by_name, classes):
         return None
-    doubts = [doubt for each in facts for doubt in each.doubts if doubt.reason != OTHER_BASE]
-    is_whole = len(constructors) == len(chain)
-    if is_whole and _takes_more(constructors[-1]) and not _gives_more(constructors[:-1], options):
-        doubts = [doubt for doubt in doubts if doubt.reason != MORE_ARGUMENTS]
-    return node._replace(
-        name=_passed_name(constructors),
-        named_at=None,
-        endpoints=tuple(end for each in facts for end in each.endpoints),
-        parameters=tuple(parameter for each in facts for parameter in each.parameters),
-        timers=tuple(timer for each in facts for timer in each.timers),
-        doubts=tuple(doubts),
-        frames=tuple(frame for each in facts for frame in each.frames),
-        transforms=tuple(transform for each in facts for transform in each.transforms),
+    return _sum_of(
+        node._replace(name=_passed_name(constructors), named_at=None),
+        [by_name[name] for name in chain],
+        is_settled=len(constructors) == len(chain)
+        and _takes_more(constructors[-1])
+        and not _gives_more(constructors[:-1], options),
     )
+
+
+def _sum_of(node: NodeFacts, facts: Sequence[NodeFacts], *, is_settled: bool) -> NodeFacts:
+    """Return a node with the facts of its bases; `is_settled`: no argument leaves a doubt."""
+    endpoints, parameters, timers = [*node.endpoints], [*node.parameters], [*node.timers]
+    frames, transforms, doubts = [*node.frames], [*node.transforms], [*node.doubts]
+    for base in facts[1:]:
+        endpoints += base.endpoints
+        parameters += base.parameters
+        timers += base.timers
+        frames += base.frames
+        transforms += base.transforms
+        doubts += base.doubts
+    settled = ("base class", "more arguments") if is_settled else ("base class",)
+    return node._replace(
+        endpoints=tuple(endpoints),
+        parameters=tuple(parameters),
+        timers=tuple(timers),
+        frames=tuple(frames),
+        transforms=tuple(transforms),
+        doubts=tuple(doubt for doubt in doubts if doubt.of not in settled),
+    )
+
+
+def _is_any_replaced(
+    chain: Sequence[str], by_name: Mapping[str, NodeFacts], classes: Mapping[str, OwnClass]
+) -> bool:
+    """Return whether a class of a chain replaces what decides about one of its bases."""
+    for index, derived in enumerate(chain):
+        for base in chain[index + 1 :]:
+            if _replaces(classes[derived], classes[base], by_name[base]):
+                return True
+    return False
+
+
+def _constructors_of(chain: Sequence[OwnClass]) -> list[_Constructor]:
+    """Return the constructors of a class and its bases; none if one may do something else."""
+    constructors: list[_Constructor] = []
+    for own_class in chain:
+        if "__init__" not in methods_of(own_class.node):
+            continue  # that of the base is called
+        constructor = _constructor_of(own_class)
+        if constructor is None:
+            return []
+        constructors.append(constructor)
+    return constructors
 
 
 def _base_classes(name: str, classes: Mapping[str, OwnClass]) -> list[str]:
@@ -119,30 +145,41 @@ def _replaces(derived: OwnClass, base: OwnClass, of_base: NodeFacts) -> bool:
 
     It is an attribute that the base reads, or a method in which the base does so.
     """
-    methods = methods_of(base.node)
-    locations = [
-        *(end.location for end in of_base.endpoints),
-        *(parameter.location for parameter in of_base.parameters),
-        *(timer.location for timer in of_base.timers),
-        *(frame.location for frame in of_base.frames),
-        *(transform.location for transform in of_base.transforms),
-    ]
-    lines = [at.line for at in locations if at.path == base.path]
-    read = {
-        node.attr
-        for node in walk(base.node)
-        if isinstance(node, ast.Attribute) and dotted(node.value) == "self"
-    }
-    own_methods = methods_of(derived.node)
+    methods, own_methods = methods_of(base.node), methods_of(derived.node)
+    lines = [at.line for at in _places_of(of_base) if at.path == base.path]
+    read = _read_attributes(base.node)
     for name in _replaced_names(derived.node):
-        method = methods.get(name)
         if name in read and name not in own_methods:
             return True
-        if method is not None and any(
-            method.lineno <= line <= (method.end_lineno or method.lineno) for line in lines
-        ):
-            return True
+        method = methods.get(name)
+        if method is not None:
+            inside = range(method.lineno, (method.end_lineno or method.lineno) + 1)
+            if any(line in inside for line in lines):
+                return True
     return False
+
+
+def _places_of(node: NodeFacts) -> Iterator[Location]:
+    """Yield where a class declares and opens what it does."""
+    for endpoint in node.endpoints:
+        yield endpoint.location
+    for parameter in node.parameters:
+        yield parameter.location
+    for timer in node.timers:
+        yield timer.location
+    for frame in node.frames:
+        yield frame.location
+    for transform in node.transforms:
+        yield transform.location
+
+
+def _read_attributes(node: ast.ClassDef) -> set[str]:
+    """Return the attributes of self that a class names."""
+    names = set[str]()
+    for part in walk(node):
+        if isinstance(part, ast.Attribute) and dotted(part.value) == "self":
+            names.add(part.attr)
+    return names
 
 
 def _replaced_names(node: ast.ClassDef) -> Iterator[str]:

@@ -43,12 +43,7 @@ from grader.ros.nodes.python.branches import calls_in_branches
 from grader.ros.nodes.python.broadcast_transforms import SENDS, SendingMethod, sent_transforms
 from grader.ros.nodes.python.code_faults import ModuleText, attributes_in, code_faults
 from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bindings
-from grader.ros.nodes.python.inherited_nodes import (
-    MORE_ARGUMENTS,
-    OTHER_BASE,
-    OwnClass,
-    with_inherited,
-)
+from grader.ros.nodes.python.inherited_nodes import OwnClass, with_inherited
 from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
 from grader.ros.nodes.python.node_slips import Program as StartedProgram
 from grader.ros.nodes.python.node_slips import node_slips
@@ -519,7 +514,8 @@ class _Module:
             if full in kinds:
                 self._facts[at] = []
                 if not NODE_CLASSES.issuperset(self.bases[full]):
-                    doubt = Doubt(OTHER_BASE, at)
+                    reason = "what another base class does is not added"
+                    doubt = Doubt(reason, at, "base class")
                     self._facts[at].append(doubt)
         self._read_calls()
         if self._constants.budget.is_spent:
@@ -860,8 +856,8 @@ class _Module:
             yield _Name(_text(name), self._at(call))
             for keyword in call.keywords:
                 if keyword.arg in _OPTIONS:
-                    reason = f"{keyword.arg} of its Node" if keyword.arg else MORE_ARGUMENTS
-                    yield Doubt(reason, self._at(call))
+                    reason = f"{keyword.arg or 'more arguments'} of its Node"
+                    yield Doubt(reason, self._at(call), "" if keyword.arg else "more arguments")
 
     def _read_method(self, part: CodePart, call: ast.Call, method: str) -> "Iterator[_Fact]":
         """Yield what a method of a node declares, opens or reads."""
