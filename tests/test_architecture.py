@@ -165,12 +165,12 @@ WEIGHTS = {
     "ros.launch": 47_450,  # the words of Lyrical, components, and what follows an error
     "ros.log": 4_050,  # names of findings beside their lines, and what keeps a started robot from being read
     "ros.mesh": 4_300,
-    "ros.nodes": 74_200,  # transforms, actions and calls in Python and C++
+    "ros.nodes": 74_900,  # transforms, actions and calls in Python and C++
     "ros.package": 28_350,  # fixes of files that cannot be read
     "ros.python": 30_000,  # branches, and constants of classes
     "ros.slips": 7_800,  # slips are proven by reading the robot again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads
-    "ros.workspace": 164_550,  # a function for each rule, the graph, and the names that editors complete and rename
+    "ros.workspace": 165_550,  # a function for each rule, the graph, and the names that editors complete and rename
     "ros.xacro": 28_600,  # xacro:attribute, and letters outside of ASCII
     "ros.xml": 13_400,  # attributes of broken tags and of newer versions of URDF
     "": 400,

@@ -20,11 +20,7 @@ from grader.ros.python.walking import walk
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
 
-<<<<<<< HEAD
-class _CalledBack(NamedTuple):
-=======
 class _CallbackRow(NamedTuple):
->>>>>>> s12-b
     """A parameter that is given a callback, and what that is called with.
 
     `most` is greater than `given` where rclpy gives another argument to who takes it.
@@ -39,23 +35,6 @@ class _CallbackRow(NamedTuple):
 
 # rclpy/{node,subscription,executors,service,client}.py, rclpy/action/{server,client}.py and
 # rclpy/task.py of ros2/rclpy, from Humble to Rolling.
-<<<<<<< HEAD
-_CALLBACKS: Mapping[str, Sequence[_CalledBack]] = {
-    "create_timer": [_CalledBack(1, "callback", 0, "")],
-    "create_subscription": [_CalledBack(2, "callback", 1, "the message", 2)],
-    "create_service": [_CalledBack(2, "callback", 2, "the request and the response")],
-    "ActionServer": [
-        _CalledBack(3, "execute_callback", 1, "the handle of the goal"),
-        _CalledBack(None, "goal_callback", 1, "the goal"),
-        _CalledBack(None, "cancel_callback", 1, "the handle of the goal"),
-        _CalledBack(None, "handle_accepted_callback", 1, "the handle of the goal"),
-    ],
-    "send_goal_async": [_CalledBack(1, "feedback_callback", 1, "the feedback")],
-    "add_done_callback": [_CalledBack(0, "callback", 1, "the future")],
-    "add_on_set_parameters_callback": [_CalledBack(0, "callback", 1, "the list of parameters")],
-    "add_pre_set_parameters_callback": [_CalledBack(0, "callback", 1, "the list of parameters")],
-    "add_post_set_parameters_callback": [_CalledBack(0, "callback", 1, "the list of parameters")],
-=======
 _CALLBACKS: Mapping[str, Sequence[_CallbackRow]] = {
     "create_timer": [_CallbackRow(1, "callback", 0, "")],
     "create_subscription": [_CallbackRow(2, "callback", 1, "the message", 2)],
@@ -71,7 +50,6 @@ _CALLBACKS: Mapping[str, Sequence[_CallbackRow]] = {
     "add_on_set_parameters_callback": [_CallbackRow(0, "callback", 1, "the list of parameters")],
     "add_pre_set_parameters_callback": [_CallbackRow(0, "callback", 1, "the list of parameters")],
     "add_post_set_parameters_callback": [_CallbackRow(0, "callback", 1, "the list of parameters")],
->>>>>>> s12-b
 }
 _TIMER_INFO = "TimerInfo"  # which rclpy gives by name to the parameter that has it as annotation
 
@@ -133,11 +111,7 @@ def _faults_of(
         )
 
 
-<<<<<<< HEAD
-def _may_be_called(callback: _CalledBack, least: float, most: float) -> bool:
-=======
 def _may_be_called(callback: _CallbackRow, least: float, most: float) -> bool:
->>>>>>> s12-b
     counts = range(callback.given, max(callback.given, callback.most) + 1)
     return any(least <= count <= most for count in counts)
 
