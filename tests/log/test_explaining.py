@@ -111,6 +111,12 @@ _BRIDGE = "Node(package='joint_state_publisher', executable='joint_state_publish
 _DECLARING = _workspace()["src/cell/package.xml"].replace(
     "<export>", "<exec_depend>joint_state_publisher</exec_depend><export>"
 )
+_IMPORTING = {
+    "package.xml": _workspace()["src/cell/package.xml"]
+    .replace("<description/>", "<description>A.</description>")
+    .replace("a@b.c", "a@example.com"),
+    "cell/mover.py": "import cv_bridge\nimport tf_transformations\n\ndef main(): ...\n",
+}
 _COMMAND = "Command(['xacro ', 'arm.urdf.xacro']),"
 _EMPTY = "[robot_state_publisher-1] Error:   Error document empty.\n"
 _PATH_AS_TEXT = (
@@ -220,6 +226,12 @@ _TARGETS = "install(TARGETS mover DESTINATION lib/${PROJECT_NAME})"
         ),
         pytest.param(
             _workspace(_STARTED_ROBOT), _NOT_PARSED, "src/cell/urdf/arm.urdf:2", id="robot"
+        ),
+        pytest.param(
+            _workspace(_IMPORTING),
+            "ModuleNotFoundError: No module named 'tf_transformations'",
+            "src/cell/cell/mover.py:1",
+            id="one of several packages",
         ),
         pytest.param(
             _workspace({"config/c.yaml": _TYPES}), _NO_TYPE, "src/cell/config/c.yaml:2", id="type"

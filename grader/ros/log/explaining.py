@@ -52,6 +52,7 @@ def explain_log(
         log: The bytes of the log.
     """
     known, unknown = list[KnownMessage](), list[LogMessage]()
+    ends = NameFixes(opened.workspace)
     seen = set[tuple[str, str]]()
     for message in read_messages(log):
         if (message.process, message.text) in seen:
@@ -66,12 +67,12 @@ def explain_log(
     roots = [each for each in known if not each.row.follows]
     asked = roots
     for each in roots:
-        answers += _answers_to(opened, problems, each)
+        answers += _answers_to(opened, problems, each, ends)
     if not answers:  # else what follows needs no cause of its own
         asked = known
         for each in known:
             if each.row.follows:
-                answers += _answers_to(opened, problems, each)
+                answers += _answers_to(opened, problems, each, ends)
     answered = {answer.line for answer in answers}
     unknown += [each.message for each in asked if each.message.line not in answered]
     for message in sorted(unknown, key=lambda message: message.line)[:_MAX_UNKNOWN]:
@@ -99,7 +100,7 @@ def _is_failure(message: LogMessage) -> bool:
 
 
 def _answers_to(
-    opened: OpenedWorkspace, problems: Sequence[Problem], known: KnownMessage
+    opened: OpenedWorkspace, problems: Sequence[Problem], known: KnownMessage, ends: NameFixes
 ) -> Iterator[LogAnswer]:
     """Yield what explains a message: places that its row names, else findings."""
     line, text = known.message.line, cut(known.message.text, _MAX_TEXT)
@@ -110,7 +111,7 @@ def _answers_to(
         placed = placed_answers(opened, known)
     except NotDecided:
         placed = ()
-    problems = _findings_for(opened, problems, known)
+    problems = _findings_for(opened, problems, known, ends)
     if placed and not (row.is_place_last and problems):
         for place in placed[:_MAX_OF_A_MESSAGE]:
             yield LogAnswer(line, text, row.name, place.text, place.location)
@@ -125,7 +126,7 @@ def _is_started(opened: OpenedWorkspace, programs: Sequence[str]) -> bool:
 
 
 def _findings_for(
-    opened: OpenedWorkspace, problems: Sequence[Problem], known: KnownMessage
+    opened: OpenedWorkspace, problems: Sequence[Problem], known: KnownMessage, ends: NameFixes
 ) -> list[Problem]:
     """Return the findings of the first rule of a row that has some with the names of a message.
 
@@ -138,7 +139,6 @@ def _findings_for(
             paths = paths_of_publishers(opened, known.groups["frame"])
     if known.row.is_of_robot:
         problems = [*_rejections_of_started(opened, problems)]
-    ends = NameFixes(opened.workspace)
     for rule in known.row.rules:
         of_rule = [problem for problem in problems if problem.is_meant_by(rule)]
         fitting = []

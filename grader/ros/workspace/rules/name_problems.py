@@ -28,7 +28,7 @@ def name_problems(workspace: Workspace) -> tuple[Problem, ...]:
             related=wrong.related,
             fixes=name_fixes.of(wrong),
             cause=wrong.cause,
-            names=(*wrong.names, wrong.word, wrong.lacked),
+            names=(*wrong.names, wrong.word),
         )
         place = name_fixes.place_of_word(wrong)
         if place is not None:
@@ -63,7 +63,9 @@ def _with_one_for_a_manifest(
         if not mismatch.lacked:
             yield mismatch
         elif mismatch is of_manifest[0]:
-            yield mismatch._replace(message=_lacked_text(workspace, of_manifest))
+            names = tuple(each.lacked for each in of_manifest)
+            message = _lacked_text(workspace, of_manifest)
+            yield mismatch._replace(message=message, names=names)
 
 
 def _without_repeated_packages(mismatches: Sequence[Mismatch]) -> Iterator[Mismatch]:
