@@ -261,6 +261,23 @@ def test_the_text_says_what_is_not_certain(workspace: Path) -> None:
     assert "static, static_transform_publisher (not certain)" in page
 
 
+def test_a_reason_of_several_ends_is_said_once(workspace: Path) -> None:
+    """At the top; several reasons have numbers."""
+    somewhere = "Node(package='demo', executable='talker', namespace=os.environ.get('X'))"
+    add_launch(workspace, somewhere)
+    _, text, _ = graph(workspace)
+    assert text.split("\n")[1] == "not certain: a part of its name is computed"
+    assert text.count("nothing that is known (not certain)") == 2
+    unread = "os.path.join(get_package_share_directory('nav2_bringup'), 'params', 'a.yaml')"
+    node = f"Node(package='nav2_amcl', executable='amcl', parameters=[{unread}])"
+    add_launch(workspace, somewhere, node)
+    _, text, _ = graph(workspace)
+    first, second = text.split("\n")[1:3]
+    assert first == "not certain, reason 1: a part of its name is computed"
+    assert second.startswith("not certain, reason 2: the file /share/nav2_bringup/params/a.yaml is")
+    assert text.count("(not certain, reason 1)") == text.count("(not certain, reason 2)") == 2
+
+
 def test_groups_and_dashes(workspace: Path) -> None:
     """Nodes of a namespace are a group; what depends on a run is dashed."""
     add_launch(

@@ -89,3 +89,7 @@ def test_reports_name_the_calls(tmp_path: Path) -> None:
     called = {"path": "my_robot.urdf.xacro", "line": 4, "column": 1, "end_line": 4}
     called["end_column"] = 1 + len('<xacro:wheel side="left"/>')
     assert problem["location"]["calls"] == [{"macro": "wheel", "location": called}]
+    concise = run(("inspect", tmp_path / "my_robot.urdf.xacro", "--format", "concise"))
+    assert (
+        " in macro wheel, called at my_robot.urdf.xacro:4: cannot read" in concise.stdout.decode()
+    )
