@@ -17,8 +17,8 @@ def looks_up(
     """A node looks up the transform from the source frame to the target frame, which is the pose of
     the source frame in the target frame.
 
-    The exchanged frames pass if the file inverts a transform; if it may do so by sines and cosines,
-    they need manual grading. Names that are parameters are those that the node gets from a launch
+    The exchanged frames pass if the file inverts a transform; if it or another file may do so, they
+    need manual grading. Names that are parameters are those that the node gets from a launch
     file. A transform that is looked up in other ways needs manual grading.
 
     Args:

@@ -17,7 +17,10 @@ def stated_versions(setup: Source) -> Iterator[tuple[str, Position]]:
     given: list[ast.expr] = []
     for node in every_node(code.tree):
         match node:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+            case (
+                ast.Assign(targets=[ast.Name(id=name)], value=value)
+                | ast.AugAssign(target=ast.Name(id=name), value=value)
+            ):
                 assigned.setdefault(name, []).append(value)
             case ast.Call(func=function) if last_name(function) == "setup":
                 given += [word.value for word in node.keywords if word.arg == "version"]

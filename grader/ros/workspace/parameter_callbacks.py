@@ -23,11 +23,13 @@ _REFUSES = re.compile(
 _DEFAULT = re.compile(
     r"^([ \t]*+)\S[^\n]*SetParametersResult(?:\s*+\(\s*+\)|\s++\w++\s*+;)", re.MULTILINE
 )
+_RETURNS = re.compile(r"\breturn\b")
 _CONDITION = re.compile(r"\b(?:if|else)\b")
 _THROWS = re.compile(r"\bthrow\b")
 _SUCCEEDS = re.compile(r"^([ \t]*+)\S*successful\s*+=", re.MULTILINE)
 # What a descriptor limits a parameter to: a range, or the value that it has first.
 _LIMITS = re.compile(r"\b(?:floating_point_range|integer_range)\b|\bread_only\s*+=\s*+[Tt]rue\b")
+_FROM_MAPPING = re.compile(r"\bParameterDescriptor\(\s*+\*\*")
 _GENERATES = re.compile(r"\bgenerate_parameter_(?:library|module)\b")
 _READS = re.compile(r"\bget_parameters?\s*+[(<]")
 
@@ -55,8 +57,8 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
                 code = code_alone(source.text, source.path)
             else:
                 code = _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
-            if _REFUSING.search(code):
-                may_refuse = may_refuse or _may_refuse(code)
+            if _FROM_MAPPING.search(code) or (_REFUSING.search(code) and _may_refuse(code)):
+                may_refuse = True
             for pattern in (_REFUSING, _TOLD, _REFUSES, _LIMITS, _GENERATES, _READS):
                 match = pattern.search(code)
                 if match is not None:
@@ -79,5 +81,7 @@ def _may_refuse(code: str) -> bool:
     made = _DEFAULT.search(code)
     if made is None:
         return "SetParametersResult(**" in code
-    set_below = _SUCCEEDS.finditer(code, made.end())
+    set_below = [*_SUCCEEDS.finditer(code, made.end())]
+    if not set_below or _RETURNS.search(code, made.end(), set_below[0].start()):
+        return True
     return any(len(each[1]) > len(made[1]) for each in set_below)

@@ -28,10 +28,16 @@ _INVERTING = re.compile(
     r"(?:Times|_?(?:[Mm]atrix|[Tt]ransform(?:ation)?|[Pp]ose|[Qq]uaternion))?"
     r"|(?:[a-z]++_)?q?(?:inverse|conjugate)|transpose|p?inv|invXform"
 )
-_MAY_INVERT = re.compile(r"[Ii]nver(?:se|t)(?!_?(?:[Kk]in|[Dd]yn))")
 _CALLED = re.compile(r"\b(\w++)\s*+\(")
-_DEFINED = re.compile(r"\bdef\s++\w++")
-_INVERTED = re.compile(r"(?<!self)\.(?:inverse|conjugate|transpose|T)\b(?!\s*+=[^=])|linalg\.solve")
+_DEFINED = re.compile(r"\bdef\s++(?!__)\w++")
+_INVERTED = re.compile(
+    r"(?<!self)\.(?:inverse|conjugate|transpose|T)\b(?!\s*+=[^=])|\binverse\s*+=\s*+True\b"
+)
+# A name of an inverse or of what solves for one, the inverse of a matrix, a power of -1, and ~pose.
+_MAY_INVERT = re.compile(
+    r"\b\w*?(?:[Ii]nver(?:se|t)(?!_?(?:[Kk]in|[Dd]yn))|[Tt]rans_?[Ii]nv|trinv)"
+    r"|\b(?:p?inv|conj|solve)\b|\.I\b|\*\*\s*+-\s*+1\b|(?:[=(,@*]|\breturn\b)\s*+~\w"
+)
 # A rotation of coordinates without a library: what a sine and a cosine are multiplied with or
 # assigned to. Half an angle is a quaternion's.
 _ROTATES = {
@@ -65,9 +71,12 @@ def looked_up_transforms(workspace: Workspace) -> tuple[Sequence[_LookedUp], boo
     lookups = [*_read_lookups(workspace)]
     texts = _texts_with_lookups(workspace) if lookups else {}
     inverting = {path: _inverts(code_alone(text, path)) for path, text in texts.items()}
-    known = [
-        lookup._replace(inverts=inverting.get(lookup.location.path, "no")) for lookup in lookups
-    ]
+    # A file may leave the inversion to a function of another one.
+    others: _Inverting = "no" if {*inverting.values()} <= {"no"} else "perhaps"
+    known = []
+    for lookup in lookups:
+        inverts = inverting.get(lookup.location.path, "no")
+        known.append(lookup._replace(inverts=others if inverts == "no" else inverts))
     return known, _may_look_up_others(workspace, lookups)
 
 
@@ -86,7 +95,7 @@ def _inverts(code: str) -> _Inverting:
     called = {*_CALLED.findall(code)}
     if _INVERTED.search(code) or any(map(_INVERTING.fullmatch, called)):
         return "yes"
-    if any(map(_MAY_INVERT.search, called)) or _CONJUGATES.search(code):
+    if _MAY_INVERT.search(code) or _CONJUGATES.search(code):
         return "perhaps"
     for name in ("sin", "cos"):
         angles = [*_ROTATES[name].findall(code), *_FACTOR[name].findall(code)]

@@ -7,7 +7,8 @@ _PYTHON = re.compile(
     r"|'''(?:[^'\\]|\\.|'(?!''))*+(?:'''|\Z)|'(?:[^'\\\n]|\\.)*+'?",
     re.DOTALL,
 )
-_CPP = re.compile(
+_CPP = re.compile(  # a number comes before what may be a text: 10'000
+    r"\b[0-9](?:'?[\w.])*+|"
     r'//[^\n]*|/\*(?:[^*]|\*(?!/))*+(?:\*/|\Z)|"(?:[^"\\\n]|\\.)*+"?|\'(?:[^\'\\\n]|\\.)*+\'?',
     re.DOTALL,
 )
@@ -24,6 +25,8 @@ def code_alone(text: str, path: str) -> str:
 
 def _blank(match: re.Match[str]) -> str:
     written, start = match[0], match.start()
+    if written[0].isdigit():
+        return written
     if written[0] in "\"'" and "f" in match.string[max(start - 2, 0) : start].lower():
         return _FILLED.sub(lambda part: " " if part[1] else part[0], written)
     return re.sub(r"\S", " ", written)

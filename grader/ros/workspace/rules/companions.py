@@ -40,7 +40,7 @@ _ROBOT_PUBLISHER = "robot_state_publisher"
 _JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"
 _JOINT_STATE_WORDS = ("joint_state", "JointState")
 _TIME = "use_sim_time"
-_CODE, _PAGES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h"), (".md", ".sh")
+_CODE, _PAGES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h"), (".md", ".sh", ".bash", "Makefile")
 _LOOSE = (*_PAGES, ".rst", ".txt", ".yaml", ".yml", "Dockerfile")  # outside of packages
 _SOURCES = (*_CODE, *_PAGES, ".yaml")
 # Launch files that start Gazebo or a part of it, and no bridge.

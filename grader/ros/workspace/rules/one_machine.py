@@ -144,8 +144,14 @@ def _said_paths(launch: Launch) -> list[str]:
 
 
 def _release_paths(source: Source, releases: Sequence[Release]) -> Iterator[Mismatch]:
-    """Yield the first path of a file in the folder of another release than the workspace is for."""
+    """Yield the first path of a file in the folder of another release than the workspace is for.
+
+    Code that names the right release, or asks for it, may choose between paths.
+    """
     allowed = {*releases, *releases_in_path(source.path)}
+    lowered = source.text.lower()
+    if any(word in lowered for word in ("ros_distro", *releases)):
+        return
     for path in _OF_RELEASE.finditer(source.text) if releases else ():
         if path["release"] not in allowed and _is_code(source, path.start()):
             stated = enumerated([*releases], word="or")

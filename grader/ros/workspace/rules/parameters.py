@@ -696,7 +696,7 @@ def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Ite
             if not isinstance(fact, Use):
                 yield fact
             elif (above, fact.name) not in elsewhere:
-                yield _section_one_level_lower(fact, node.value) or fact
+                yield from _missing_section(fact, node.value)
 
 
 def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[Definition | Use]:
@@ -717,18 +717,26 @@ def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[De
             yield use._replace(taken=frozenset(names))
 
 
-def _section_one_level_lower(use: Use, mapping: Mapping[str, YamlNode]) -> Mismatch | None:
-    """Return that the section of a plugin is in one that is beside its list; None for another."""
+def _missing_section(use: Use, mapping: Mapping[str, YamlNode]) -> Iterator[Use | Mismatch]:
+    """Yield that the section of a plugin is in one that is beside its list, or else its use.
+
+    A section without a class is of no plugin: what reads it may find it there.
+    """
     if use.optional or use.name in mapping:
-        return None
+        yield use
+        return
     holders: list[str] = []
     for name, beside in mapping.items():
         inner = beside.get(use.name)
         if inner is not None and isinstance(inner.value, dict):
             holders.append(name)
     if len(holders) != 1:
-        return None
+        yield use
+        return
     [holder] = holders
+    section = mapping[holder].get(use.name)
+    if use.said != _SOURCES and (section is None or section.get("plugin") is None):
+        return
     message = f"the section {use.name!r} is in {holder!r}, but belongs beside {use.said}"
     is_layer = holder.endswith("layer") or mapping[holder].get("plugin") is not None
     if use.said == _SOURCES and is_layer:
@@ -736,7 +744,7 @@ def _section_one_level_lower(use: Use, mapping: Mapping[str, YamlNode]) -> Misma
             f"{_SOURCES} belongs in {holder!r}, where {use.name!r} is; the costmap does not read "
             "it here"
         )
-    return Mismatch(DEFINED["plugin section"], message, use.location, word=use.name)
+    yield Mismatch(DEFINED["plugin section"], message, use.location, word=use.name)
 
 
 def _is_default(key: str, names: Sequence[str]) -> bool:

@@ -361,9 +361,10 @@ def _other_axes(placed: _PlacedWheels) -> Iterator[Mismatch]:
 def _limited_wheels(placed: _PlacedWheels) -> Iterator[Mismatch]:
     """Yield the wheels that stop after some turns, as those of a simulated robot do.
 
-    Limits that are meant to be none are wider.
+    Limits that are meant to be none are wider. A number that is of neither side may be of joints
+    that steer.
     """
-    if placed.kind not in _ROLLING:
+    if placed.kind not in _ROLLING or placed.kind not in _SIDED:
         return
     for wheel in placed.wheels.all:
         joint, limit = wheel.joint, wheel.joint.limit
