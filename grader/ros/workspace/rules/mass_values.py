@@ -6,10 +6,10 @@ from math import dist, hypot, sqrt
 from grader.base.quantities import in_millimetres, point
 from grader.base.source import place
 from grader.base.text import quoted
-from grader.base.transforms import Vector
+from grader.base.transforms import Transform, Vector
 from grader.ros.urdf.mass_properties import Tensor, solid_inertia, turned, with_volume
 from grader.ros.urdf.model import Collision, Cylinder, Inertial, Link, Mesh, Visual
-from grader.ros.urdf.shapes import PlacedShape
+from grader.ros.urdf.shapes import PlacedShape, Shape
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
@@ -98,20 +98,23 @@ def _other_centre(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
     if isinstance(shape, Mesh) or any(each.origin.xyz != origin.xyz for each in elements):
         return
     T_link_shape = origin.placed_in()
-    rotation = (inertial.origin.placed_in().inverse() @ T_link_shape).rotation
-    expected = turned(solid_inertia(shape, inertial.mass), rotation)
     size = hypot(*(most - least for least, most in _extents([PlacedShape(shape, T_link_shape)])))
     away = hypot(*T_link_shape.translation)
-    is_same = dist(inertial.inertia, expected) <= _EQUAL * max(map(abs, expected))
-    if not is_same or away <= _MARGIN + _MARGIN_SHARE * size:
+    if not _is_of_solid(inertial, shape, T_link_shape) or away <= _MARGIN + _MARGIN_SHARE * size:
         return
     message = (
         f"the inertia of {quoted(link.name)} is that of its shape about the middle, but its centre "
         f'of mass is {in_millimetres(away)} away: write <origin xyz="{point(origin.xyz)}"/>'
     )
-    at = place(inertial.location)
-    if at is not None:
-        yield warning(INERTIA_PLACE, message, at.resolve())
+    assert inertial.location is not None  # which mass_facts() asks for
+    yield warning(INERTIA_PLACE, message, inertial.location.resolve())
+
+
+def _is_of_solid(inertial: Inertial, shape: Shape, T_link_shape: Transform) -> bool:
+    """Return whether an inertia is that of a uniform solid about its middle."""
+    rotation = (inertial.origin.placed_in().inverse() @ T_link_shape).rotation
+    expected = turned(solid_inertia(shape, inertial.mass), rotation)
+    return dist(inertial.inertia, expected) <= _EQUAL * max(map(abs, expected))
 
 
 def _too_large(link: Link, inertial: Inertial) -> Iterator[Mismatch]:

@@ -1,14 +1,12 @@
 """The form of package.xml, setup.py and setup.cfg: what the tools accept and warn of, or ignore."""
 
-import ast
 import re
 from collections.abc import Iterator
 
 from grader.base.source import Source
 from grader.base.text import cut, enumerated, quoted
 from grader.ros.installation.manifest import DeclaredDependency, Manifest
-from grader.ros.python.constants import last_name
-from grader.ros.python.parse import Code, every_node, location_in, parse, position_of
+from grader.ros.package.setup_version import versions_in
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
@@ -89,28 +87,10 @@ def _capital_names(manifest: Manifest) -> Iterator[Mismatch]:
 
 def _other_versions(manifest: Manifest, setup: Source) -> Iterator[Mismatch]:
     """Yield that setup() in setup.py is given another version than package.xml has."""
-    code = parse(setup.text.encode("utf-8", "replace"), setup.path)
-    if not isinstance(code, Code) or not manifest.version:
-        return
-    assigned: dict[str, list[ast.expr]] = {}
-    given: list[ast.expr] = []
-    for node in every_node(code.tree):
-        match node:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                assigned.setdefault(name, []).append(value)
-            case ast.Call(func=function) if last_name(function) == "setup":
-                given += [word.value for word in node.keywords if word.arg == "version"]
-    for value in given:
-        match value:
-            case ast.Name(id=name):
-                values = assigned.get(name, [])
-            case _:
-                values = [value]
-        match values:
-            case [ast.Constant(value=str(version)) as text] if version != manifest.version:
-                message = f"setup.py has the version {version}, package.xml {manifest.version}"
-                at = location_in(setup, position_of(text))
-                yield warning(PACKAGE_VERSION, message, at, manifest.name_location)
+    for version in versions_in(setup) if manifest.version else ():
+        if version.text != manifest.version:
+            message = f"setup.py has the version {version.text}, package.xml {manifest.version}"
+            yield warning(PACKAGE_VERSION, message, version.location, manifest.name_location)
 
 
 def _dashed_keys(source: Source) -> Iterator[Mismatch]:
