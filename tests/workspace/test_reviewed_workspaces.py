@@ -16,8 +16,8 @@ _CODES = {kind.code for kind in EVERY_KIND}
 # The workspaces that were reviewed before there were rules for their mistakes, those that were reviewed then, and the last ones.
 _REVIEWS = {"first": slice(0, 12), "new": slice(12, 16), "newest": slice(16, None)}
 # Measured, not wanted: how many were found when the workspaces were read first, of how many; and with later rules.
-_FOUND = {"first": (48, 140), "new": (31, 66), "newest": (18, 37), "later": (147, 243)}
-_FOUND_OF_WHAT_STOPS = {"first": (18, 46), "new": (4, 10), "newest": (5, 14), "later": (43, 70)}
+_FOUND = {"first": (48, 140), "new": (31, 66), "newest": (18, 37), "later": (150, 243)}
+_FOUND_OF_WHAT_STOPS = {"first": (18, 46), "new": (4, 10), "newest": (5, 14), "later": (45, 70)}
 
 
 def _counted(mistakes: Iterable[Any]) -> tuple[int, int]:

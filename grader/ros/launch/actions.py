@@ -591,8 +591,8 @@ def _launch_by_command(
         if not separator or PART_UNKNOWN in name:
             return False
         given[name] = Unknown("an argument", call.at) if PART_UNKNOWN in value else value
-    inside = replace(context, arguments=given, to_all={}, included_by=(), when=when)
-    if not start_known_file(visitor.findings, path, call, inside):
+    alone = replace(context, arguments=given, to_all={}, included_by=(), when=when)
+    if not start_known_file(visitor.findings, path, call, alone):
         return False
     at = visitor.findings.locate(call.at)
     passed = PassedArguments(path.removeprefix(f"{PREFIX}/"), texts_by_name(given), at, when)

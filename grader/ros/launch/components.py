@@ -3,6 +3,7 @@
 Components are classes that a launch file loads into a container.
 """
 
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
 from grader.base.source import Location
@@ -12,7 +13,6 @@ from grader.ros.launch.launch_model import (
     Container,
     Context,
     Findings,
-    GivenParameters,
     LoadedComponent,
     StartedNode,
 )
@@ -95,18 +95,27 @@ def _with_options(node: StartedNode, options: list[str]) -> StartedNode | None:
     is_known = len(names) == len(words) and {*names} <= {*_OF_NODE, *_OF_NO_NODE}
     if not is_known or any(PART_UNKNOWN in word for word in words):
         return None
-    remaps: list[tuple[str, ...]] = []
-    parameters: list[GivenParameters] = []
+    given: dict[str, list[str]] = {}
     for name, word in zip(names, words, strict=True):
-        if name in _NAME:
-            node = node._replace(node_name=word)
-        elif name in _BELOW:
-            node = node._replace(namespace=word)
-        elif name in _REMAP:
-            remaps += [(old, new) for old, _, new in remap_rules(["-r", word])]
-        elif name in _PARAMETER:
-            parameters += parameters_in_words(["-p", word], node.location)
-    return node._replace(remaps=tuple(remaps), parameters=tuple(parameters), arguments=())
+        given.setdefault(name, []).append(word)
+    rules = remap_rules(_words_of(given, _REMAP))
+    parameters = parameters_in_words(_words_of(given, _PARAMETER), node.location)
+    return node._replace(
+        node_name=(_words_of(given, _NAME) or [""])[-1],
+        namespace=(_words_of(given, _BELOW) or [""])[-1],
+        remaps=tuple((old, new) for old, _, new in rules),
+        parameters=tuple(parameters),
+        arguments=(),
+    )
+
+
+def _words_of(given: Mapping[str, Sequence[str]], options: Sequence[str]) -> list[str]:
+    """Return the words behind some options, each behind the first of these."""
+    words: list[str] = []
+    for option in options:
+        for word in given.get(option, ()):
+            words += (options[0], word)
+    return words
 
 
 def _absolute(name: str) -> str:

@@ -3,7 +3,7 @@
 import re
 from typing import NamedTuple
 
-from grader.base.source import Location
+from grader.base.source import Location, Source
 from grader.ros.workspace.model.code_text import code_alone
 from grader.ros.workspace.model.workspace import Workspace
 
@@ -53,10 +53,7 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
     may_refuse = False
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, (*_ENDINGS, *_BUILDS)):
-            if source.path.endswith(_ENDINGS):
-                code = code_alone(source.text, source.path)
-            else:
-                code = _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
+            code = _code_of(source)
             if _FROM_MAPPING.search(code) or (_REFUSING.search(code) and _may_refuse(code)):
                 may_refuse = True
             for pattern in (_REFUSING, _TOLD, _REFUSES, _LIMITS, _GENERATES, _READS):
@@ -71,6 +68,13 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
         _READS in first,
         may_refuse,
     )
+
+
+def _code_of(source: Source) -> str:
+    """Return a text without its comments, and without the texts in code."""
+    if source.path.endswith(_ENDINGS):
+        return code_alone(source.text, source.path)
+    return _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
 
 
 def _may_refuse(code: str) -> bool:

@@ -558,17 +558,13 @@ class _Search:
     def of_actions(self) -> Iterator[CodeFault]:
         """Yield what is done wrong with actions and transforms."""
         goals, answering = list[RegisteredGoal](), list[RegisteredGoal]()
-        for registered in self._registered:
-            if registered.by != "ActionServer":
-                continue
-            call, part = registered.call, registered.part
-            function = self._function(registered.given, part)
-            if function is not None:
-                goals.append(RegisteredGoal(function, call))
-            answer = given_argument(call, len(call.args), "goal_callback")
-            function = self._function(answer, part) if answer is not None else None
-            if function is not None:
-                answering.append(RegisteredGoal(function, call))
+        servers = [each for each in self._registered if each.by == "ActionServer"]
+        for server in servers:
+            goals += self._goals_of(server, server.given)
+            call = server.call
+            answering += self._goals_of(
+                server, given_argument(call, len(call.args), "goal_callback")
+            )
         yield from goals_without_state(self._code, goals)
         yield from rejected_goals(self._code, answering)
         text = self._code.source.text
@@ -579,6 +575,11 @@ class _Search:
         if "Buffer" in text and "TransformListener" not in text:
             names = imported_names(every_node(self._code.tree))
             yield from buffers_without_listener(self._code, names)
+
+    def _goals_of(self, server: _Registered, given: ast.expr | None) -> list[RegisteredGoal]:
+        """Return the function that an action server is given; nothing where it is not known."""
+        function = self._function(given, server.part) if given is not None else None
+        return [RegisteredGoal(function, server.call)] if function is not None else []
 
     def _may_have_threads(self) -> bool:
         """Return whether anything but rclpy.spin() may run callbacks."""

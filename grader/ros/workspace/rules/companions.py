@@ -216,17 +216,20 @@ def _may_have_clock(workspace: Workspace) -> bool:
     """
     if _is_bridged(workspace, _CLOCK):
         return True
-    for _, launch in workspace.launches.roots:
-        if _may_start_clock(workspace, launch):
-            return True
+    if any(_may_start_clock(workspace, launch) for _, launch in workspace.launches.roots):
+        return True
     for _, node in workspace.launches.nodes:
         is_open_bridge = node.package == BRIDGE and None in (node.arguments or (None,))
         if is_open_bridge or _may_be_clock(workspace, node):
             return True
-    passed = [each for _, launch in workspace.launches.roots for each in launch.passed]
-    if any(map(_is_of_gazebo, passed)):
-        return _may_bridge_clock(workspace)
-    return _is_told(workspace)
+    return _may_bridge_clock(workspace) if _starts_gazebo(workspace) else _is_told(workspace)
+
+
+def _starts_gazebo(workspace: Workspace) -> bool:
+    """Return whether a launch file starts Gazebo by a file that starts nothing else."""
+    return any(
+        _is_of_gazebo(passed) for _, launch in workspace.launches.roots for passed in launch.passed
+    )
 
 
 def _is_of_gazebo(passed: PassedArguments) -> bool:

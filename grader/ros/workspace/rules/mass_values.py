@@ -92,28 +92,41 @@ def _other_centre(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
 
     A centre of mass with an offset may be meant, one at the origin of the link is forgotten.
     """
-    elements: list[Visual | Collision] = [*link.visuals, *link.collisions]
-    shapes = with_volume(link.collisions) or with_volume(link.visuals)
-    if len(shapes) != 1 or any(inertial.origin.xyz):
+    placed = _only_shape(link)
+    if placed is None or any(inertial.origin.xyz):
         return
-    shape, origin = shapes[0]
-    if isinstance(shape, Mesh) or any(each.origin.xyz != origin.xyz for each in elements):
+    if not _is_of_solid(inertial, placed):
         return
-    T_link_shape = origin.placed_in()
-    rotation = (inertial.origin.placed_in().inverse() @ T_link_shape).rotation
-    expected = turned(solid_inertia(shape, inertial.mass), rotation)
-    size = hypot(*(most - least for least, most in _extents([PlacedShape(shape, T_link_shape)])))
-    away = hypot(*T_link_shape.translation)
-    is_same = dist(inertial.inertia, expected) <= _EQUAL * max(map(abs, expected))
-    if not is_same or away <= _MARGIN + _MARGIN_SHARE * size:
+    middle = placed.pose.translation
+    size = hypot(*(most - least for least, most in _extents([placed])))
+    away = hypot(*middle)
+    if away <= _MARGIN + _MARGIN_SHARE * size:
         return
     message = (
         f"the inertia of {quoted(link.name)} is that of its shape about the middle, but its centre "
-        f'of mass is {in_millimetres(away)} away: write <origin xyz="{point(origin.xyz)}"/>'
+        f'of mass is {in_millimetres(away)} away: write <origin xyz="{point(middle)}"/>'
     )
-    at = place(inertial.location)
-    if at is not None:
-        yield warning(INERTIA_PLACE, message, at.resolve())
+    assert inertial.location is not None  # which mass_facts() asks for
+    yield warning(INERTIA_PLACE, message, inertial.location.resolve())
+
+
+def _only_shape(link: Link) -> PlacedShape | None:
+    """Return the only shape of a link, in whose middle its visuals are, too."""
+    elements: list[Visual | Collision] = [*link.visuals, *link.collisions]
+    shapes = with_volume(link.collisions) or with_volume(link.visuals)
+    if len(shapes) != 1 or any(each.origin.xyz != shapes[0][1].xyz for each in elements):
+        return None
+    shape, origin = shapes[0]
+    return PlacedShape(shape, origin.placed_in())
+
+
+def _is_of_solid(inertial: Inertial, placed: PlacedShape) -> bool:
+    """Return whether an inertia is that of a uniform solid about its middle."""
+    rotation = (inertial.origin.placed_in().inverse() @ placed.pose).rotation
+    if isinstance(placed.geometry, Mesh):
+        return False
+    expected = turned(solid_inertia(placed.geometry, inertial.mass), rotation)
+    return dist(inertial.inertia, expected) <= _EQUAL * max(map(abs, expected))
 
 
 def _too_large(link: Link, inertial: Inertial) -> Iterator[Mismatch]:

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from grader.base.source import Source
 from grader.base.text import cut, enumerated, quoted
 from grader.ros.installation.manifest import DeclaredDependency, Manifest
-from grader.ros.installation.stated_versions import stated_versions
-from grader.ros.python.parse import location_in
+from grader.ros.package.setup_version import versions_in
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
@@ -88,13 +87,10 @@ def _capital_names(manifest: Manifest) -> Iterator[Mismatch]:
 
 def _other_versions(manifest: Manifest, setup: Source) -> Iterator[Mismatch]:
     """Yield that setup() in setup.py is given another version than package.xml has."""
-    if not manifest.version:
-        return
-    for version, position in stated_versions(setup):
-        if version != manifest.version:
-            message = f"setup.py has the version {version}, package.xml {manifest.version}"
-            at = location_in(setup, position)
-            yield warning(PACKAGE_VERSION, message, at, manifest.name_location)
+    for version in versions_in(setup) if manifest.version else ():
+        if version.text != manifest.version:
+            message = f"setup.py has the version {version.text}, package.xml {manifest.version}"
+            yield warning(PACKAGE_VERSION, message, version.location, manifest.name_location)
 
 
 def _dashed_keys(source: Source) -> Iterator[Mismatch]:
