@@ -166,7 +166,7 @@ WEIGHTS = {
     "ros.log": 4_050,  # names of findings beside their lines, and what keeps a started robot from being read
     "ros.mesh": 4_300,
     "ros.nodes": 74_900,  # transforms, actions and calls in Python and C++
-    "ros.package": 28_350,  # fixes of files that cannot be read
+    "ros.package": 28_700,  # fixes of files that cannot be read
     "ros.python": 30_000,  # branches, and constants of classes
     "ros.slips": 7_800,  # slips are proven by reading the robot again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads

@@ -171,9 +171,15 @@ def _find_function(
     inside = _functions_named(walk(part.node), name) if part.name else []
     if inside:
         return _only_function(inside, own_nodes(part.node))
+    return _find_in_module(code, name)
+
+
+def _find_in_module(code: Code, name: str) -> _Function | None:
+    """Return the function that a name of a module surely is."""
     body = own_nodes(code.tree)
-    if any(name in node.names for node in walk(code.tree) if isinstance(node, ast.Global)):
-        return None
+    for node in walk(code.tree):
+        if isinstance(node, ast.Global) and name in node.names:
+            return None
     return _only_function(_functions_named(body, name), body)
 
 

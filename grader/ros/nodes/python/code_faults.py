@@ -650,18 +650,22 @@ class _Search:
         spinning = [name for name in names if _may_spin([name])]
         if spinning != ["spin_once"] or names["spin_once"] != 1 or self._is_imported():
             return
+        repeated = _names_in_loops([self._module])
         for part in self._module.parts:
-            if part.of is not None or named[part.name] > 1:
-                continue
-            repeated = {"spin_once", part.name} & _names_in_loops([self._module])
-            for call in part.calls if not repeated else ():
-                if last_name(call.func) == "spin_once":
-                    message = (
-                        "spin_once() runs one callback at most, and nothing else spins the node; "
-                        "write rclpy.spin(node)"
-                    )
-                    is_certain = self._has_several_callbacks()
-                    yield CodeFault("nothing spins", message, self._at(call), None, is_certain)
+            is_run_once = named[part.name] < 2 and repeated.isdisjoint(("spin_once", part.name))
+            if part.of is None and is_run_once:
+                yield from self._single_spins(part)
+
+    def _single_spins(self, part: CodePart) -> Iterator[CodeFault]:
+        """Yield the calls in a function, which runs once, that run one callback."""
+        for call in part.calls:
+            if last_name(call.func) == "spin_once":
+                message = (
+                    "spin_once() runs one callback at most, and nothing else spins the node; "
+                    "write rclpy.spin(node)"
+                )
+                is_certain = self._has_several_callbacks()
+                yield CodeFault("nothing spins", message, self._at(call), None, is_certain)
 
     def _has_several_callbacks(self) -> bool:
         """Return whether the only node of the module surely has more than one callback."""

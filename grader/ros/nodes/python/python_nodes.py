@@ -170,15 +170,7 @@ def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
     """
     modules, unread = _read_modules(package)
     doubts = [Doubt("the file is not read", Location(package.path(path), 1, 1)) for path in unread]
-    kinds = _derived_classes(modules)
-    nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
-    classes: dict[str, OwnClass] = {}
-    for module in modules.values():
-        classes |= module.own_classes()
-    nodes = with_inherited(nodes, classes, _OPTIONS)
-    if not unread:
-        unused = unused_publishers(module.text().code for module in modules.values())
-        nodes = [_with_unused(node, unused) for node in nodes]
+    nodes = _nodes_of_modules(modules, are_all=not unread)
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
     programs = []
     for program in _programs(package, modules, nodes, reads_meant=reads_meant):
@@ -186,6 +178,21 @@ def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
         programs.append(read)
         doubts += doubts_of_program
     return _joined_nodes(modules.values(), nodes, programs, doubts, package.releases)
+
+
+def _nodes_of_modules(modules: Mapping[str, "_Module"], *, are_all: bool) -> list[NodeFacts]:
+    """Return the nodes of modules, each with what its base classes in them do."""
+    kinds = _derived_classes(modules)
+    nodes: list[NodeFacts] = []
+    classes: dict[str, OwnClass] = {}
+    for module in modules.values():
+        nodes += module.read_nodes(kinds)
+        classes |= module.own_classes()
+    nodes = with_inherited(nodes, classes, _OPTIONS)
+    if are_all:
+        unused = unused_publishers(module.text().code for module in modules.values())
+        nodes = [_with_unused(node, unused) for node in nodes]
+    return nodes
 
 
 def _with_unused(node: NodeFacts, unused: Collection[Location]) -> NodeFacts:

@@ -21,6 +21,14 @@ def unused_publishers(modules: Iterable[Code]) -> set[Location]:
     nodes = [node for code in codes for node in every_node(code.tree)]
     if binds_unseen(nodes):
         return set()
+    read = _read_names(nodes)
+    if "publishers" in read:  # those of a node, all of them
+        return set()
+    return {at for code in codes for at in _unused_in(code, read)}
+
+
+def _read_names(nodes: Iterable[ast.AST]) -> set[str]:
+    """Return the attributes that code reads, and the texts in it."""
     read: set[str] = set()
     for node in nodes:
         match node:
@@ -30,9 +38,7 @@ def unused_publishers(modules: Iterable[Code]) -> set[Location]:
                 read.add(name)
             case ast.Constant(value=str(name)):
                 read.add(name)
-    if "publishers" in read:  # those of a node, all of them
-        return set()
-    return {at for code in codes for at in _unused_in(code, read)}
+    return read
 
 
 def _unused_in(code: Code, read: set[str]) -> Iterator[Location]:
