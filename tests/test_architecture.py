@@ -143,19 +143,19 @@ ROOMS_WITH_WEIGHTS = ("ros", "lab")  # the other packages have one limit each
 # How many nodes a room may have, what is beside rooms counted for its package. A limit is at most 2 % above the figure.
 # It is raised with its reason in the line: what code weighs grows with what it can do, and with nothing else.
 WEIGHTS = {
-    "app": 48_950,  # a running inspection: --watch, editors and renames
+    "app": 49_000,  # a running inspection: --watch, editors and renames
     "base": 18_500,  # problems have their fixes, with the edits of tags
-    "classroom": 70_400,  # functions of complexity at most 10
+    "classroom": 70_900,  # the lines of a summary, and equal changes, are said once
     "files": 12_350,  # the end of a log is read from a file, a folder or a pipe
     "lab": 100,
     "lab.authoring": 47_500,  # drafts ask about nodes and graphs, and give points by the mean
     "lab.checks": 51_500,  # checks of the graph of what is launched
     "lab.documents": 10_900,
     "lab.grading": 13_000,  # what hides the base
-    "lab.hints": 36_000,  # functions of complexity at most 10
+    "lab.hints": 36_250,  # other edits are named, and exchanged ends are one mistake
     "lab.rubric": 10_000,
     "lab.submission": 9_600,  # slips are proven by reading the file again
-    "report": 65_700,  # graphs as text, JSON, DOT, Mermaid and a page
+    "report": 66_100,  # what several edits fix is listed below one of them
     "ros": 350,  # the API has the names that checks of the graph use
     "ros.config": 5_750,  # numbers of parameters in quotes
     "ros.cpp": 13_400,  # errors of the grammar leave open one statement only
