@@ -28,7 +28,7 @@ MISTAKES = {
     "degrees": (
         SHOULDER,
         'lower="-90" upper="45" effort="10" velocity="2"',
-        "the unit of the lower and the upper of the joint limit of 'upper': degrees, not radians",
+        "the unit of the lower and the upper of the joint limit of 'upper' is degrees; it should be radians",
         ['lower="-1.5708"', 'upper="0.7854"'],
     ),
     "sign": (

@@ -158,10 +158,8 @@ def _warnings(before: Gradebook, mark: Mark) -> Iterator[str]:
     ):
         what = "mark" if old.value else "comment"
         words = f"{old.value}{by_name(old.by)}: {' '.join(old.comment.split())}".strip(": ")
-        if mark.value == WITHDRAWN:
-            yield f"withdrawn: the {what} of {criterion} in {old.place}: {words}"
-        else:
-            yield f"this replaces the {what} of {criterion} in {old.place}: {words}"
+        change = "withdrawn:" if mark.value == WITHDRAWN else "this replaces"
+        yield f"{change} the {what} of {criterion} in {old.place}: {words}"
     elif mark.value == WITHDRAWN:
         yield f"there was no mark of {criterion} to withdraw"
     if any(row.id == criterion and row.adjustment is not None for row in before.rubric.criteria):

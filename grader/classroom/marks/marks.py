@@ -402,19 +402,16 @@ def mark_file(folder: Path, by: str) -> Path:
 
     Raises InputError if the login has no name, as in a container.
     """
-    name = unicodedata.normalize("NFC", (by.strip() or _login_name()).lower())
+    name = unicodedata.normalize("NFC", by.strip().lower())
+    if not name:
+        try:
+            name = getuser().lower()
+        except (OSError, KeyError, ImportError):  # by the version of Python and the system
+            raise InputError("this login has no name: name yourself with --by NAME") from None
     if not _SAFE.fullmatch(name):
         digest = sha256_of(name.encode("utf-8", "surrogateescape"))[:16]
         name = f"{re.sub('[^a-z0-9_]+', '-', name).strip('-')[:40] or '_'}-{digest}"
     return folder / f"{name}.csv"
-
-
-def _login_name() -> str:
-    """Return the name of the login. Raises InputError if there is none."""
-    try:
-        return getuser()
-    except (OSError, KeyError, ImportError):  # no account: by the version of Python and the system
-        raise InputError("this login has no name: name yourself with --by NAME") from None
 
 
 def is_open_in_libreoffice(path: Path) -> bool:
