@@ -41,6 +41,7 @@ class CalledFunctions:
             if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
         )
         parameters = {node.arg for node in nodes if isinstance(node, ast.arg)}
+        self._defined = {node.name for node in nodes if isinstance(node, ast.FunctionDef)}
         self._rebound = parameters.union(self._stored)
         made: dict[str, list[str]] = {}
         for target, kind in made_in(node for node in nodes if isinstance(node, ast.stmt)):
@@ -96,6 +97,8 @@ class CalledFunctions:
         made = self._made.get(name, ())
         if len(made) != 1 or self._stored[name.rpartition(".")[2]] != 1:
             return None
+        if made[0].rpartition(".")[2] in self._defined:
+            return None
         return _MAKING.get(made[0].rpartition(".")[2])
 
     def _kind_of(self, owner: ast.ClassDef | None, argument: ast.expr) -> ArgumentKind | None:
@@ -108,7 +111,8 @@ class CalledFunctions:
         name = dotted(argument)
         methods = methods_of(owner) if owner is not None else {}
         method = methods.get(name.removeprefix("self.")) if name.startswith("self.") else None
-        if method is not None and not method.decorator_list:
+        is_kept = method is not None and not self._stored[method.name]
+        if is_kept and method is not None and not method.decorator_list:
             return "function"
         return "type" if self._is_interface(argument) else None
 

@@ -602,17 +602,25 @@ class _Search:
         calls = [call for part in self._module.parts if part.of is None for call in part.calls]
         by_name = {dotted(call.func): call for call in reversed(calls)}
         init, spin = by_name.get("rclpy.init"), by_name.get("rclpy.spin")
-        if init is not None and self._registered and not _may_spin(names):
-            message = (
-                "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
-            )
-            is_certain = not self._may_work_in_loops(reached)
-            yield CodeFault("nothing spins", message, self._at(init), is_certain=is_certain)
         if init is not None and self._registered:
-            yield from self._spun_once(reached)
+            yield from self._unspun(init, names, reached)
         if spin is not None and not self._is_initialised(names):
             message = "rclpy.init() is missing, so rclpy makes no node"
             yield CodeFault("no rclpy.init", message, self._at(spin))
+
+    def _unspun(
+        self, init: ast.Call, names: Collection[str], reached: Sequence[ModuleText]
+    ) -> Iterator[CodeFault]:
+        """Yield that nothing spins a node with callbacks, or that it is spun once."""
+        # A TransformListener can spin the node in a thread.
+        if any("spin_thread" in module.code.source.text for module in reached):
+            return
+        if _may_spin(names):
+            yield from self._spun_once(reached)
+            return
+        message = "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
+        is_certain = not self._may_work_in_loops(reached)
+        yield CodeFault("nothing spins", message, self._at(init), is_certain=is_certain)
 
     def _may_work_in_loops(self, modules: Sequence[ModuleText]) -> bool:
         """Return whether a loop of a program may do something, in place of its callbacks.
