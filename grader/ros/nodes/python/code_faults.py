@@ -70,9 +70,19 @@ _LOOPS = (
 _ENDING = frozenset({"sys.exit", "exit", "quit", "os._exit"})
 
 
-# What a loop may call that only waits.
+# What may run the callbacks of nodes: rclpy/__init__.py, executors.py, wait_for_message.py and
+# experimental/ of ros2/rclpy, from Humble to Rolling.
+_SPINS = frozenset(
+    {
+        *("spin", "spin_once", "spin_until_future_complete", "spin_once_until_future_complete"),
+        *("spin_until_complete", "spin_some", "spin_all", "_spin_once_impl"),
+        *("wait_for_ready_callbacks", "_wait_for_ready_callbacks", "wait_for_message"),
+        *("WaitSet", "AsyncNode"),  # the run() of the latter is awaited
+    }
+)
 # What calls functions of a node besides its timers, subscriptions, services and actions.
 _OTHER_CALLBACKS = ("TransformListener", "message_filters", "add_done_callback")
+# What a loop may call that only waits.
 _PAUSES = frozenset({"time.sleep", "sleep", "rate.sleep", "self.rate.sleep"})
 
 
@@ -603,24 +613,48 @@ class _Search:
         by_name = {dotted(call.func): call for call in reversed(calls)}
         init, spin = by_name.get("rclpy.init"), by_name.get("rclpy.spin")
         if init is not None and self._registered:
-            yield from self._unspun(init, names, reached)
+            yield from self._unspun(init, reached)
         if spin is not None and not self._is_initialised(names):
             message = "rclpy.init() is missing, so rclpy makes no node"
             yield CodeFault("no rclpy.init", message, self._at(spin))
 
-    def _unspun(
-        self, init: ast.Call, names: Collection[str], reached: Sequence[ModuleText]
-    ) -> Iterator[CodeFault]:
+    def _unspun(self, init: ast.Call, reached: Sequence[ModuleText]) -> Iterator[CodeFault]:
         """Yield that nothing spins a node with callbacks, or that it is spun once."""
         # A TransformListener can spin the node in a thread.
         if any("spin_thread" in module.code.source.text for module in reached):
             return
-        if _may_spin(names):
+        if _may_spin(reached):
             yield from self._spun_once(reached)
-            return
-        message = "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
-        is_certain = not self._may_work_in_loops(reached)
-        yield CodeFault("nothing spins", message, self._at(init), is_certain=is_certain)
+        elif self._certainly_registers(init):
+            message = (
+                "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
+            )
+            is_certain = not self._may_work_in_loops(reached)
+            yield CodeFault("nothing spins", message, self._at(init), is_certain=is_certain)
+
+    def _certainly_registers(self, init: ast.Call) -> bool:
+        """Return whether a node that functions of the module make certainly has a callback.
+
+        Neither a condition decides about the callback, nor about the node.
+        """
+        conditional = calls_in_branches(self._code.tree)
+        called, made = {"", "main", "__init__"}, set[str]()
+        for part in self._module.parts:
+            names = {last_name(call.func) for call in part.calls if call not in conditional}
+            called |= {*names, part.name} if init in part.calls else names
+            made |= names if part.of is None else set()
+        for node in reversed([*self._module.classes.values()]):  # which are below their bases
+            if node.name in made:
+                made.update(last_name(base) for base in node.bases)
+        return any(
+            registered.call not in conditional
+            and registered.part.name in called
+            and (registered.part.of is None or self._class_name(registered.part.of) in made)
+            for registered in self._registered
+        )
+
+    def _class_name(self, at: Location) -> str:
+        return self._module.classes[at].name
 
     def _may_work_in_loops(self, modules: Sequence[ModuleText]) -> bool:
         """Return whether a loop of a program may do something, in place of its callbacks.
@@ -652,28 +686,55 @@ class _Search:
     def _spun_once(self, reached: Sequence[ModuleText]) -> Iterator[CodeFault]:
         """Yield that a program runs one callback of a node at most.
 
-        It is certain for a node that surely has several: one may wait for one message.
+        It is certain for a node that surely has several. One without a timeout may wait for the
+        message of the only subscription.
         """
-        names, named = _count_names(reached), _count_names([self._module])
-        spinning = [name for name in names if _may_spin([name])]
+        names = _count_names(reached)
+        spinning = [name for name in names if name in _SPINS]
         if spinning != ["spin_once"] or names["spin_once"] != 1 or self._is_imported():
             return
-        repeated = _names_in_loops([self._module])
-        for part in self._module.parts:
-            is_run_once = named[part.name] < 2 and repeated.isdisjoint(("spin_once", part.name))
-            if part.of is None and is_run_once:
-                yield from self._single_spins(part)
+        kinds = [registered.by for registered in self._registered]
+        for call in self._calls_run_once():
+            has_timeout = len(call.args) + len(call.keywords) > 1
+            if last_name(call.func) != "spin_once" or (
+                kinds == ["create_subscription"] and not has_timeout
+            ):
+                continue
+            message = (
+                "spin_once() runs one callback at most, and nothing else spins the node; "
+                "write rclpy.spin(node)"
+            )
+            is_certain = self._has_several_callbacks()
+            yield CodeFault("nothing spins", message, self._at(call), None, is_certain)
 
-    def _single_spins(self, part: CodePart) -> Iterator[CodeFault]:
-        """Yield the calls in a function, which runs once, that run one callback."""
-        for call in part.calls:
-            if last_name(call.func) == "spin_once":
-                message = (
-                    "spin_once() runs one callback at most, and nothing else spins the node; "
-                    "write rclpy.spin(node)"
-                )
-                is_certain = self._has_several_callbacks()
-                yield CodeFault("nothing spins", message, self._at(call), None, is_certain)
+    def _calls_run_once(self) -> Iterator[ast.Call]:
+        """Yield the calls that run once at most, as the functions are that have them.
+
+        They are in the body of the module, or in a function that at most this calls, and in no
+        loop. No other module imports this one.
+        """
+        named = _count_names([self._module])
+        in_loops = {
+            node
+            for loop in every_node(self._code.tree)
+            if isinstance(loop, _LOOPS)
+            for node in walk(loop)
+        }
+        [body] = [part for part in self._module.parts if isinstance(part.node, ast.Module)]
+        called = Counter(dotted(call.func) for call in body.calls if call not in in_loops)
+        for part in self._module.parts:
+            node = part.node
+            if isinstance(node, ast.Module):
+                calls = [*body.calls]
+            elif (
+                part.of is None
+                and not node.decorator_list
+                and (named[part.name] == called[part.name] <= 1)
+            ):
+                calls = [*_calls_in(node)]
+            else:
+                continue
+            yield from (call for call in calls if call not in in_loops)
 
     def _has_several_callbacks(self) -> bool:
         """Return whether the only node of the module surely has more than one callback."""
@@ -917,28 +978,18 @@ def _count_names(modules: Iterable[ModuleText]) -> Counter[str]:
     return names
 
 
-def _names_in_loops(modules: Iterable[ModuleText]) -> set[str]:
-    """Return the names and attributes that are written in loops and comprehensions of modules."""
-    names = set[str]()
-    for module in modules:
-        for loop in every_node(module.code.tree):
-            if isinstance(loop, _LOOPS):
-                for node in walk(loop):
-                    names.add(getattr(node, "attr", "") or getattr(node, "id", ""))
-    return names
-
-
 def _is_plain_test(test: ast.expr) -> bool:
     """Return whether the condition of a loop does nothing: it calls at most rclpy.ok()."""
     calls = [node for node in walk(test) if isinstance(node, ast.Call)]
     return all(dotted(call.func) == "rclpy.ok" for call in calls)
 
 
-def _may_spin(names: Collection[str]) -> bool:
-    """Return whether one of the names in a program may spin a node."""
-    if "AsyncNode" in names:  # of rclpy.experimental: its run() is awaited
+def _may_spin(modules: Sequence[ModuleText]) -> bool:
+    """Return whether modules may spin a node, or ask a TransformListener to do so."""
+    if any("spin_thread" in module.code.source.text for module in modules):
         return True
-    return any("spin" in name or "WaitSet" in name or "wait_for" in name for name in names)
+    imported = {name.rpartition(".")[2] for module in modules for name in module.imports}
+    return not _SPINS.isdisjoint(imported.union(_count_names(modules)))
 
 
 def _only_waits(body: Sequence[ast.stmt]) -> bool:

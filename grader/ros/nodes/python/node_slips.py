@@ -17,6 +17,7 @@ from grader.base.source import Edit
 from grader.ros.known.package_tables import python_table
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import given_argument
+from grader.ros.nodes.python.branches import calls_in_branches
 from grader.ros.nodes.python.called_functions import (
     CalledFunctions,
     imported_names,
@@ -24,7 +25,7 @@ from grader.ros.nodes.python.called_functions import (
     methods_of,
 )
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
-from grader.ros.python.constants import binds_unseen, dotted
+from grader.ros.python.constants import binds_unseen, dotted, last_name
 from grader.ros.python.parse import Code, Position, location_in, position_of
 from grader.ros.python.walking import children, walk
 
@@ -390,8 +391,9 @@ class _NodeSlips:
         modules = {full.partition(".")[0] for full in self._imports.values()}
         if "spin" in self._code.source.text or waits or modules & _WAITING:
             return True
-        inside = walk(node_class)
-        called = {getattr(node, "attr", getattr(node, "id", "")) for node in inside}
+        calls = [node for node in walk(node_class) if isinstance(node, ast.Call)]
+        conditional = calls_in_branches(self._code.tree)
+        called = {last_name(call.func) for call in calls if call not in conditional}
         return called.isdisjoint(CALLBACKS)
 
     def _without_spin(self, statement: ast.stmt, name: str) -> Iterator[Slip]:
