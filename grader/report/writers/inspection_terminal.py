@@ -112,17 +112,22 @@ def _robot_rows(inspection: Inspection, console: Console) -> Iterator[Text]:
     is_only = len(inspection.robots) == 1
     yield Text()
     yield Text("Robot" if is_only else "Robots", "bold")
-    paths = [printable(robot.path) for robot in inspection.robots]
-    ends = []
-    for robot, path in zip(inspection.robots, paths, strict=True):
-        room = console.width - INDENT - len(robot_line(robot)) - len(": ")
-        ends.append(path if is_only else _end_of(path, max(room, _MIN_MESSAGE)))
-    if len({*ends}) < len({*paths}):
-        ends = _with_difference(paths)
-    for robot, path in zip(inspection.robots, ends, strict=True):
+    for robot, path in zip(inspection.robots, _robot_paths(inspection, console), strict=True):
         line = robot_line(robot)
         text = Text.assemble(" " * INDENT, path, ": ", (line, _STYLES[robot.verdict]))
         yield block(console, text, 2 * INDENT, Text()) if is_only else shortened(console, text)
+
+
+def _robot_paths(inspection: Inspection, console: Console) -> list[str]:
+    """Return the paths of robots, of several in the room that a row has, and all different."""
+    paths = [printable(robot.path) for robot in inspection.robots]
+    if len(paths) == 1:
+        return paths
+    ends = []
+    for robot, path in zip(inspection.robots, paths, strict=True):
+        room = console.width - INDENT - len(robot_line(robot)) - len(": ")
+        ends.append(_end_of(path, max(room, _MIN_MESSAGE)))
+    return ends if len({*ends}) == len({*paths}) else _with_difference(paths)
 
 
 def _first_robots(rows: list[Text], room: "_RowsLeft") -> list[Text]:

@@ -85,7 +85,10 @@ def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) 
             expressions += len(package.installation.unknown)
     for _, _, launch in workspace.launches.files:
         expressions += len(launch.unknown)
-    endpoints = [endpoint for node in nodes for endpoint in node.endpoints]
+    computed_names = 0
+    for node in nodes:
+        for endpoint in node.endpoints:
+            computed_names += endpoint.is_computed
     return Extent(
         packages=len(workspace.packages),
         robots=len(workspace.urdfs),
@@ -95,7 +98,7 @@ def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) 
         unread_packages=_count_copies(workspace),
         unread_robots=unread_robots,
         cpp_files=cpp_files,
-        computed_names=sum(endpoint.is_computed for endpoint in endpoints),
+        computed_names=computed_names,
         expressions=expressions,
         calls=read_calls(workspace),
         stated=stated,
