@@ -269,6 +269,7 @@ def test_goals_without_a_state(library: str, members: str, *, is_ended: bool) ->
         ("rclcpp_action::", "return rclcpp_action::GoalResponse::REJECT;", True),
         ("rclcpp_action::", "return ok ? Answer::ACCEPT_AND_DEFER : Answer::REJECT;", False),
         ("rclcpp_action::", "return decided(order);", False),
+        ("rclcpp_action::", "return rclcpp_action::CancelResponse::REJECT;", False),
         ("other::", "return GoalResponse::REJECT;", False),
     ],
 )

@@ -286,6 +286,13 @@ def test_objects_of_nodes() -> None:
     assert [it.reason for it in program.nodes[0].doubts] == ["Helper is given the node"]
 
 
+def test_errors_that_are_caught() -> None:
+    """What is opened in a try block may be refused without stopping the node."""
+    opened = 'create_publisher<Float32>("{}", 1);'
+    node = node_of(f"try {{ {opened.format('a')} }} catch (...) {{ }}", opened.format("b"))
+    assert [(it.name, it.is_caught) for it in node.endpoints] == [("a", True), ("b", False)]
+
+
 def test_headers_of_the_package() -> None:
     """A class in a header of the package is read with the file that includes it."""
     header = 'class Talker : public rclcpp::Node { public: Talker() : Node("a") {} };'

@@ -160,9 +160,10 @@ def _types_given(
     named = _count_uses(nodes)
     types_by_name: dict[tuple[Location | None, str], list[tuple[str, ...]]] = {}
     for part in parts:
+        bound = _names_inside(part)
         for call in part.calls:
             callback = _typed_callback(call, part.scope, value_of)
-            if callback is not None:
+            if callback is not None and callback[0] not in bound:
                 name, types = callback
                 of = part.of if name.startswith("self.") else None
                 types_by_name.setdefault((of, name), []).append(types)
@@ -171,6 +172,20 @@ def _types_given(
         for key, types_of_each in types_by_name.items()
         if {*types_of_each} == {types_of_each[0]} and named[key[1]] == len(types_of_each)
     }
+
+
+def _names_inside(part: CodePart) -> set[str]:
+    """Return the names that a function, or one in it, binds; none of a module."""
+    names = set[str]()
+    for node in walk(part.node) if part.name else ():
+        match node:
+            case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+                names.add(name)
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
+                names.add(name)
+            case ast.alias(name=full, asname=asname):
+                names.add(asname or full)
+    return names - {part.name}
 
 
 def _count_uses(nodes: Iterable[ast.AST]) -> Counter[str]:
@@ -384,8 +399,16 @@ def certain_nodes(function: ast.AST) -> Iterator[ast.AST]:
                 pending += [*handlers, *orelse, *final]
             case ast.Module(body=body):
                 pending += [statement for statement in body if not isinstance(statement, _SCOPES)]
+            case ast.With(items=items) | ast.AsyncWith(items=items) if suppresses(items):
+                continue
             case _:
                 pending += children(node)
+
+
+def suppresses(items: Sequence[ast.withitem]) -> bool:
+    """Return whether a with statement may keep errors in it from stopping the program."""
+    calls = [getattr(item.context_expr, "func", item.context_expr) for item in items]
+    return any("suppress" in dotted(call) or "raises" in dotted(call) for call in calls)
 
 
 def _catches(handlers: Sequence[ast.ExceptHandler]) -> bool:

@@ -57,6 +57,7 @@ class Endpoint(NamedTuple):
     # Of the images that it sends, or to which its callback converts them; none if one is unknown.
     encodings: tuple[ImageEncoding, ...] = ()
     is_conditional: bool = False  # whether a condition in the code decides if it is opened
+    is_caught: bool = False  # whether the code may catch the error that it is refused with
     is_unused: bool = False  # a publisher with which the code certainly publishes nothing
 
     @property

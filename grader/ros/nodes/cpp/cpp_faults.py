@@ -6,7 +6,7 @@ Each rule is about what certainly fails once it runs.
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import chain
+from itertools import chain, islice
 
 from grader.ros.cpp.declarations import CppFunction, declared_in, plain
 from grader.ros.cpp.objects import class_written
@@ -42,6 +42,7 @@ _HANDLES = dict.fromkeys(
 _ENDING_STATES, _ACTIONS = ("succeed", "abort"), "rclcpp_action::"
 # The answers to a goal: rclcpp_action/include/rclcpp_action/types.hpp.
 _ACCEPTS, _REJECTS = ("ACCEPT_AND_EXECUTE", "ACCEPT_AND_DEFER"), "REJECT"
+_CANCEL_ANSWER = "CancelResponse"  # which rejects as well, but no goals
 # Publishers of these nodes send nothing before: rclcpp_lifecycle/lifecycle_publisher.hpp.
 _LIFECYCLE, _ACTIVATES = "rclcpp_lifecycle::LifecycleNode", "on_activate"
 _LISTENER, _BUFFER = "TransformListener", "Buffer"
@@ -156,7 +157,8 @@ class _CppSearch:
     def rejected_goals(self) -> Iterator[CodeFault]:
         """Yield action servers in files in which goals are rejected, and none is accepted."""
         uses = self._unit.uses
-        if _REJECTS not in uses or not uses.keys().isdisjoint(_ACCEPTS):
+        rejections = [node for node in uses.get(_REJECTS, ()) if not _is_of_cancelling(node)]
+        if not rejections or not uses.keys().isdisjoint(_ACCEPTS):
             return
         for function in self._methods:
             for call in self._calls(function, "create_server"):
@@ -390,6 +392,11 @@ def _may_wait(function: CppFunction, unit: CppUnit) -> bool:
         return True
     calls = [call for call in unit.calls_in(function) if call.kind == "call_expression"]
     return any(_SPINNING.search(called_name(call).rpartition("::")[2]) for call in calls)
+
+
+def _is_of_cancelling(node: CppNode) -> bool:
+    """Return whether a name is one of the answers to who cancels a goal."""
+    return any(_CANCEL_ANSWER in around.text for around in islice(node.ancestors(), 1))
 
 
 def _outermost_member(node: CppNode) -> CppNode:

@@ -1,7 +1,7 @@
 """What calls of rclcpp declare and open: one recorded call to the facts of a node."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from grader.base.source import Location
 from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue, not_known
@@ -70,6 +70,7 @@ _WITHOUT_EFFECT = (
     "get_rmw_qos_profile",
 )
 _BRANCHES = ("if_statement", "switch_statement", "conditional_expression", "catch_clause")
+_CATCHING = ("try_statement",)
 _EMPTY: Mapping[str, Value] = {"string": "", "string_view": "", "double": 0.0, "float": 0.0}
 _INTEGERS = ("int", "uint", "size_t", "long", "unsigned", "short")  # how their names begin
 _VALUE_METHODS = frozenset(
@@ -96,14 +97,15 @@ def endpoint_of(
         call.node.location,
         qos,
         parts,
-        is_conditional=_is_in_branch(call.node),
+        is_conditional=_is_inside(_BRANCHES, call.node),
+        is_caught=_is_inside(_CATCHING, call.node),
     )
 
 
-def _is_in_branch(node: CppNode) -> bool:
-    """Return whether a condition in its function decides whether a call is executed."""
+def _is_inside(kinds: Collection[str], node: CppNode) -> bool:
+    """Return whether a statement of some kinds has a node in it, in the function of that."""
     for around in node.ancestors():
-        if around.kind in _BRANCHES:
+        if around.kind in kinds:
             return True
         if around.kind == "function_definition":
             return False

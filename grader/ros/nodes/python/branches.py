@@ -1,10 +1,14 @@
-"""The calls of a module that a condition decides."""
+"""The calls of a module that a condition decides, or whose errors it may catch."""
 
 import ast
 
-from grader.ros.python.walking import children
+from grader.ros.nodes.message_uses import suppresses
+from grader.ros.python.constants import last_name
+from grader.ros.python.walking import children, walk
 
 _BRANCHES = (ast.If, ast.IfExp, ast.Match, ast.ExceptHandler)
+# What a handler of these does not keep from stopping the program.
+INTERRUPTS = frozenset({"KeyboardInterrupt", "SystemExit", "ExternalShutdownException"})
 
 
 def calls_in_branches(tree: ast.Module) -> frozenset[ast.Call]:
@@ -25,3 +29,28 @@ def _asks_for_program(node: ast.AST) -> bool:
     test = getattr(node, "test", None)
     left = test.left if isinstance(test, ast.Compare) else None
     return isinstance(left, ast.Name) and left.id == "__name__"
+
+
+def calls_caught(tree: ast.Module) -> frozenset[ast.Call]:
+    """Return the calls whose errors the code around them may catch or suppress."""
+    calls = set[ast.Call]()
+    pending: list[ast.AST] = [tree]
+    while pending:
+        node = pending.pop()
+        match node:
+            case ast.Try(body=body, handlers=handlers) if any(map(_may_catch_error, handlers)):
+                inside = body
+            case ast.With(items=items, body=body) if suppresses(items):
+                inside = body
+            case _:
+                pending += children(node)
+                continue
+        calls.update(part for each in inside for part in walk(each) if isinstance(part, ast.Call))
+        pending += [child for child in children(node) if child not in inside]
+    return frozenset(calls)
+
+
+def _may_catch_error(handler: ast.ExceptHandler) -> bool:
+    """Return whether a handler may catch anything but what interrupts a program."""
+    kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
+    return any(kind is None or last_name(kind) not in INTERRUPTS for kind in kinds)

@@ -6,7 +6,7 @@ defines again or replaces.
 """
 
 import ast
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.base.source import Location
@@ -65,20 +65,19 @@ def wrong_callbacks(
     code: Code,
     parts: Sequence[CodePart],
     classes: Mapping[Location | None, CallbackClass],
-    defined: Collection[str],
+    is_of_rclpy: Callable[[ast.Call, CodePart], bool],
 ) -> Iterator[CodeFault]:
     """Yield the callbacks that cannot be called with what rclpy gives them.
 
-    `classes` are those of the parts, by their places. `defined` are the names of all functions of
-    the package: one that has a function of the name of one of rclpy may do something else.
+    `classes` are those of the parts, by their places; `is_of_rclpy` says whether a call surely is
+    one of rclpy's.
     """
     if "rclpy" not in code.source.text:
         return
     for part in parts:
         faults = []
         for call in part.calls:
-            called = last_name(call.func)
-            if called in _CALLBACKS and called not in defined:
+            if last_name(call.func) in _CALLBACKS and is_of_rclpy(call, part):
                 faults += [(call, fault) for fault in _faults_of(code, part, call, classes)]
         certain = set(certain_nodes(part.node)) if faults else set[ast.AST]()
         yield from (fault for call, fault in faults if call in certain)
@@ -94,7 +93,7 @@ def _faults_of(
         given = given_argument(call, position, callback.name)
         if given is None:
             continue
-        function = _find_function(code, part, given, classes)
+        function = find_function(code, part, given, classes)
         if function is None or _is_given_time(called, function, code):
             continue
         is_method = dotted(given).startswith("self.")
@@ -156,7 +155,7 @@ def _is_given_time(called: str, function: _Function, code: Code) -> bool:
     return any(parameter.annotation is not None for parameter in parameters)
 
 
-def _find_function(
+def find_function(
     code: Code, part: CodePart, given: ast.expr, classes: Mapping[Location | None, CallbackClass]
 ) -> _Function | None:
     """Return the function that an expression surely is; None if that is not known."""

@@ -6,8 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from grader.ros.known.releases import Release
 from grader.ros.nodes.python.python_calls import ArgumentKind, Written, WrongCall, wrong_call
-from grader.ros.python.constants import dotted
+from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
+from grader.ros.python.constants import dotted, last_name
 from grader.ros.python.parse import Code, Position, location_in, position_of
+from grader.ros.python.walking import walk
 
 _PLAIN_NODES = ("rclpy.Node", "rclpy.node.Node")
 # The classes of what calls make, of which the table of calls has methods.
@@ -34,18 +36,33 @@ class CalledFunctions:
         releases: Sequence[Release],
     ) -> None:
         """Search in the nodes of the code; `imports` has the full names of what it imports."""
-        self._code, self._imports, self._releases = code, imports, releases
+        self._code, self._releases = code, releases
         self._stored = Counter(  # how often a variable or an attribute is bound
             getattr(node, "id", getattr(node, "attr", ""))
             for node in nodes
             if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
         )
         parameters = {node.arg for node in nodes if isinstance(node, ast.arg)}
-        self._defined = {node.name for node in nodes if isinstance(node, ast.FunctionDef)}
+        self._defined = {
+            node.name
+            for node in nodes
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+        }
         self._rebound = parameters.union(self._stored)
-        made: dict[str, list[str]] = {}
-        for target, kind in made_in(node for node in nodes if isinstance(node, ast.stmt)):
-            made.setdefault(target, []).append(kind)
+        rebound = self._rebound | self._defined | _names_of_several_imports(nodes)
+        # The names that the module certainly imports, and does not bind to anything else.
+        self._imports = {name: full for name, full in imports.items() if name not in rebound}
+        self._lost = rebound
+        classes = [node for node in nodes if isinstance(node, ast.ClassDef)]
+        self._bound_in = {owner: _names_in(owner) for owner in classes}
+        self._owners: dict[ast.AST, list[ast.ClassDef]] = {}  # the classes that calls are in
+        for owner in classes:
+            for node in walk(owner):
+                if isinstance(node, ast.Call):
+                    self._owners.setdefault(node, []).append(owner)
+        made: dict[str, list[ast.Call]] = {}
+        for target, call in _calls_bound(node for node in nodes if isinstance(node, ast.stmt)):
+            made.setdefault(target, []).append(call)
         self._made = made
 
     def wrong_call(
@@ -75,7 +92,7 @@ class CalledFunctions:
         name = dotted(call.func)
         receiver, _, method = name.rpartition(".")
         if owner is not None and receiver == "self":
-            return f"Node.{method}" if method not in methods_of(owner) else None
+            return f"Node.{method}" if not self._is_replaced(method, owner) else None
         match call.func:
             case ast.Attribute(attr="__init__", value=ast.Call(func=ast.Name(id="super"), args=[])):
                 is_plain = owner is not None and self._full_name(owner.bases[0]) in _PLAIN_NODES
@@ -89,17 +106,50 @@ class CalledFunctions:
         return f"{kind}.{method}" if kind is not None else None
 
     def _full_name(self, node: ast.expr) -> str:
+        """Return the full name of what is imported; empty for what may be something else."""
         first, dot, rest = dotted(node).partition(".")
+        if first in self._lost:
+            return ""
         return f"{self._imports.get(first, first)}{dot}{rest}"
 
     def _kind_of_object(self, name: str) -> str | None:
-        """Return what a variable or attribute holds that the file binds once."""
+        """Return what a variable or attribute holds that the file binds once, if rclpy makes it."""
+        calls = self._made.get(name, ())
+        if len(calls) != 1 or self._stored[name.rpartition(".")[2]] != 1:
+            return None
+        made = calls[0].func
+        maker = last_name(made)
+        if self._full_name(made).startswith(("rclpy.action.", "tf2_ros.")):
+            return _MAKING.get(maker)
+        if not isinstance(made, ast.Attribute):
+            return None
+        return _MAKING.get(maker) if self._is_node(made.value, calls[0]) else None
+
+    def _is_node(self, node: ast.expr, call: ast.Call) -> bool:
+        """Return whether the object whose method is called surely is a node of rclpy."""
+        name, method = dotted(node), last_name(call.func)
+        if name == "self":
+            owners = self._owners.get(call, ())
+            return len(owners) == 1 and self._is_node_class(owners[0], method)
         made = self._made.get(name, ())
         if len(made) != 1 or self._stored[name.rpartition(".")[2]] != 1:
-            return None
-        if made[0].rpartition(".")[2] in self._defined:
-            return None
-        return _MAKING.get(made[0].rpartition(".")[2])
+            return False
+        full = self._full_name(made[0].func)
+        owners = [owner for owner in self._bound_in if owner.name == dotted(made[0].func)]
+        is_own = len(owners) == 1 and self._is_node_class(owners[0], method)
+        return is_own or full in _PLAIN_NODES or full == "rclpy.create_node"
+
+    def _is_node_class(self, owner: ast.ClassDef, method: str) -> bool:
+        """Return whether a class has no bases but those of rclpy, and does not replace a method."""
+        is_plain = not owner.keywords and not owner.decorator_list and bool(owner.bases)
+        names = {self._full_name(base) for base in owner.bases}
+        return is_plain and names <= NODE_CLASSES and not self._is_replaced(method, owner)
+
+    def _is_replaced(self, method: str, owner: ast.ClassDef) -> bool:
+        """Return whether the module may replace a method of a class of nodes."""
+        if method in self._defined or method in self._stored:
+            return True
+        return method in self._bound_in.get(owner, ())
 
     def _kind_of(self, owner: ast.ClassDef | None, argument: ast.expr) -> ArgumentKind | None:
         """Return what an argument surely is."""
@@ -111,8 +161,7 @@ class CalledFunctions:
         name = dotted(argument)
         methods = methods_of(owner) if owner is not None else {}
         method = methods.get(name.removeprefix("self.")) if name.startswith("self.") else None
-        is_kept = method is not None and not self._stored[method.name]
-        if is_kept and method is not None and not method.decorator_list:
+        if method is not None and not method.decorator_list and method.name not in self._stored:
             return "function"
         return "type" if self._is_interface(argument) else None
 
@@ -120,7 +169,7 @@ class CalledFunctions:
         """Return whether an expression is a type of messages, or a section of another type."""
         first, _, section = dotted(argument).partition(".")
         parts = self._full_name(argument).split(".")
-        if first not in self._imports or first in self._rebound or parts[0] == "rclpy":
+        if first not in self._imports or first in self._rebound or parts[0] in ("rclpy", ""):
             return False
         if parts[-1] in _SECTIONS and parts[-1] in section:
             parts.pop()
@@ -139,10 +188,42 @@ class CalledFunctions:
 
 def made_in(statements: Iterable[ast.stmt]) -> Iterator[tuple[str, str]]:
     """Yield the variables and attributes that statements bind, with what their calls make."""
+    for target, call in _calls_bound(statements):
+        yield target, dotted(call.func)
+
+
+def _calls_bound(statements: Iterable[ast.stmt]) -> Iterator[tuple[str, ast.Call]]:
     for statement in statements:
         match statement:
             case ast.Assign(targets=[ast.Name() | ast.Attribute() as to], value=ast.Call() as made):
-                yield dotted(to), dotted(made.func)
+                yield dotted(to), made
+
+
+def _names_of_several_imports(nodes: Iterable[ast.AST]) -> set[str]:
+    """Return the names that imports bind to more than one thing."""
+    names: dict[str, set[str]] = {}
+    for node in nodes:
+        for name, full in imported_names([node]).items():
+            names.setdefault(name, set()).add(full)
+    return {name for name, full_names in names.items() if len(full_names) > 1}
+
+
+def _names_in(owner: ast.ClassDef) -> frozenset[str]:
+    """Return the names that the body of a class binds."""
+    return frozenset(name for node in owner.body for name in names_bound_by(node))
+
+
+def names_bound_by(node: ast.stmt) -> Iterator[str]:
+    """Yield the names that a statement in the body of a class binds."""
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        yield node.name
+        return
+    for part in walk(node):
+        match part:
+            case ast.Name(id=name, ctx=ast.Store()) | ast.FunctionDef(name=name):
+                yield name
+            case ast.alias(name=full, asname=asname):
+                yield asname or full.partition(".")[0]
 
 
 def methods_of(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:
@@ -159,9 +240,10 @@ def imported_names(nodes: Iterable[ast.AST]) -> dict[str, str]:
                 for alias in names:
                     top = alias.name.partition(".")[0]
                     imports[alias.asname or top] = alias.name if alias.asname else top
-            case ast.ImportFrom(module=module, names=names):
-                for alias in names:
-                    imports[alias.asname or alias.name] = f"{module}.{alias.name}"
+            case ast.ImportFrom(module=module, names=names, level=level):
+                for alias in names:  # of the package itself, if dots come first
+                    full = f"{'.' * level}{module or ''}.{alias.name}"
+                    imports[alias.asname or alias.name] = full
     return imports
 
 

@@ -8,7 +8,7 @@ create_subscription(), create_service() or ActionServer.
 import ast
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from typing import NamedTuple
 
 from grader.base.names import closest, near
@@ -28,8 +28,16 @@ from grader.ros.nodes.python.action_faults import (
     rejected_goals,
 )
 from grader.ros.nodes.python.branches import calls_in_branches
-from grader.ros.nodes.python.callback_parameters import CallbackClass, wrong_callbacks
-from grader.ros.nodes.python.called_functions import CalledFunctions, imported_names
+from grader.ros.nodes.python.callback_parameters import (
+    CallbackClass,
+    find_function,
+    wrong_callbacks,
+)
+from grader.ros.nodes.python.called_functions import (
+    CalledFunctions,
+    imported_names,
+    names_bound_by,
+)
 from grader.ros.nodes.python.log_calls import wrong_log_calls
 from grader.ros.nodes.python.node_constructors import early_uses
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
@@ -110,13 +118,17 @@ class _PackageAttributes(NamedTuple):
     stored: Collection[str]
     texts: Collection[str]
     may_be_more: bool
+    # Whether all that the modules import is of the package, or known to have no nodes of its own.
+    is_closed: bool
 
 
 def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
     """Return the attributes of the modules of a package."""
     stored, texts, increased = set[str](), set[str](), set[ast.AST]()
-    may_be_more = False
+    may_be_more, imported, packages = False, set[str](), set[str]()
     for module in modules:
+        imported.update(module.imports)
+        packages.add(module.name.partition(".")[0])
         nodes = every_node(module.code.tree)
         plain_nodes = {*module.nodes.values()}
         may_be_more = may_be_more or binds_unseen(nodes)
@@ -130,8 +142,9 @@ def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
                     texts.add(text)
                 case ast.ClassDef(bases=[_, *_]) if node not in plain_nodes:
                     # it may define what a class asks for that it is derived from
-                    stored.update(name for inner in node.body for name in _defined_by(inner))
-    return _PackageAttributes(stored, texts, may_be_more)
+                    stored.update(name for inner in node.body for name in names_bound_by(inner))
+    is_closed = all(is_passive(name) or name.partition(".")[0] in packages for name in imported)
+    return _PackageAttributes(stored, texts, may_be_more, is_closed)
 
 
 def code_faults(
@@ -145,11 +158,11 @@ def code_faults(
     `others` are all modules of the package, by their names, and `attributes` those of all of
     them. Calls are those of the given releases, or of any that are known.
     """
-    search = _Search(module, others)
+    search = _Search(module, others, attributes)
     yield from _undefined_names(module.code)
-    yield from search.undefined_attributes(attributes)
+    yield from search.undefined_attributes()
     yield from search.called_callbacks()
-    yield from search.wrong_parameters(attributes)
+    yield from search.wrong_parameters()
     yield from search.without_response()
     yield from search.waiting_callbacks()
     yield from search.of_programs()
@@ -253,8 +266,16 @@ class _Registered(NamedTuple):
 class _Search:
     """The search for the faults of one module."""
 
-    def __init__(self, module: ModuleText, others: Mapping[str, ModuleText]) -> None:
-        self._module, self._others = module, others
+    def __init__(
+        self,
+        module: ModuleText,
+        others: Mapping[str, ModuleText],
+        attributes: _PackageAttributes,
+    ) -> None:
+        self._module, self._others, self._attributes = module, others, attributes
+        self._callback_classes: dict[Location | None, CallbackClass] = {
+            at: CallbackClass(node, attributes.stored) for at, node in module.classes.items()
+        }
         self._code = module.code
         self._functions = {
             (part.of, part.name): part.node
@@ -296,8 +317,9 @@ class _Search:
             return self._functions.get((part.of, name[5:]))
         return self._functions.get((None, name))
 
-    def undefined_attributes(self, attributes: _PackageAttributes) -> Iterator[CodeFault]:
+    def undefined_attributes(self) -> Iterator[CodeFault]:
         """Yield the attributes of self that a class of nodes reads, and nothing sets or defines."""
+        attributes = self._attributes
         if attributes.may_be_more:
             return
         known, asked = {*python_table().node_attributes, *attributes.stored}, {*attributes.texts}
@@ -310,7 +332,7 @@ class _Search:
         self, part: CodePart, owner: ast.ClassDef, known: Collection[str], asked: set[str]
     ) -> Iterator[CodeFault]:
         """Yield those of a method; what is said is added to what the module asks for."""
-        own_names = {name for node in owner.body for name in _defined_by(node)}
+        own_names = {name for node in owner.body for name in names_bound_by(node)}
         read: list[ast.Attribute] = []
         for node in certain_nodes(part.node):
             match node:
@@ -364,21 +386,46 @@ class _Search:
                 fixes = self._rewrite(start, self._end(registered.given), name)
             yield CodeFault("callback is called", message, at, fixes=fixes)
 
-    def wrong_parameters(self, attributes: _PackageAttributes) -> Iterator[CodeFault]:
+    def wrong_parameters(self) -> Iterator[CodeFault]:
         """Yield callbacks that cannot take what they are called with."""
-        if attributes.may_be_more:
-            return
-        classes: dict[Location | None, CallbackClass] = {}
-        for at, node in self._module.classes.items():
-            classes[at] = CallbackClass(node, attributes.stored)
-        defined = {part.name for other in self._others.values() for part in other.parts}
-        yield from wrong_callbacks(self._code, self._module.parts, classes, defined)
+        if not self._attributes.may_be_more:
+            parts, classes = self._module.parts, self._callback_classes
+            yield from wrong_callbacks(self._code, parts, classes, self._is_of_rclpy)
+
+    def _is_of_rclpy(self, call: ast.Call, part: CodePart) -> bool:
+        """Return whether a call that is given a callback surely is one of rclpy.
+
+        No function or class of the package has its name, and it is called of a class of nodes that
+        has no other base, or nothing is imported that may be another library of nodes.
+        """
+        name = last_name(call.func)
+        if name in self._defined:
+            return False
+        is_node = dotted(call.func) == f"self.{name}" and part.of in self._module.nodes
+        return is_node or self._attributes.is_closed
+
+    @cached_property
+    def _defined(self) -> set[str]:
+        """The names of the functions and classes of the package."""
+        names = set[str]()
+        for other in self._others.values():
+            names.update(part.name for part in other.parts)
+            names.update(node.name for node in other.classes.values())
+        return names
+
+    def _callback(self, registered: _Registered) -> ast.FunctionDef | ast.AsyncFunctionDef | None:
+        """Return the function that surely is given; None if it may be another one."""
+        if not self._is_of_rclpy(registered.call, registered.part):
+            return None
+        given, part = registered.given, registered.part
+        function = find_function(self._code, part, given, self._callback_classes)
+        return function if not isinstance(function, ast.Lambda) else None
 
     def without_response(self) -> Iterator[CodeFault]:
         """Yield callbacks of services and actions that return nothing."""
         said = set[ast.AST]()
         for registered in self._registered:
-            function = self._function(registered.given, registered.part)
+            function = self._callback(registered)
             if registered.by not in _ANSWERING or function is None or function in said:
                 continue
             said.add(function)
@@ -522,10 +569,7 @@ class _Search:
         """Yield the callbacks of timers, subscriptions and services, and own methods they call."""
         seen = set[ast.AST]()
         pending = [registered for registered in self._registered if registered.by != "ActionServer"]
-        reached = [
-            (self._function(registered.given, registered.part), registered.part)
-            for registered in pending
-        ]
+        reached = [(self._callback(registered), registered.part) for registered in pending]
         while reached:
             function, part = reached.pop(0)
             if function is None or function in seen:
@@ -588,7 +632,7 @@ class _Search:
 
     def _goals_of(self, server: _Registered, given: ast.expr | None) -> list[RegisteredGoal]:
         """Return the function that an action server is given; nothing where it is not known."""
-        function = self._function(given, server.part) if given is not None else None
+        function = self._callback(server._replace(given=given)) if given is not None else None
         return [RegisteredGoal(function, server.call)] if function is not None else []
 
     def _may_have_threads(self) -> bool:
@@ -678,7 +722,7 @@ class _Search:
         named = _count_names(self._others.values())
         inside = set[ast.AST]()
         for registered in self._registered:
-            function = self._function(registered.given, registered.part)
+            function = self._callback(registered)
             if function is not None and named[function.name] == 1:
                 inside.update(walk(function))
         return inside
@@ -800,19 +844,6 @@ def _with_callees(
             if isinstance(node, ast.Call):
                 pending += functions.get(dotted(node.func).removeprefix("self."), ())
     return inside
-
-
-def _defined_by(node: ast.stmt) -> Iterator[str]:
-    """Yield the names that a statement in the body of a class defines."""
-    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-        yield node.name
-        return
-    for part in walk(node):
-        match part:
-            case ast.Name(id=name, ctx=ast.Store()) | ast.FunctionDef(name=name):
-                yield name
-            case ast.alias(name=full, asname=asname):
-                yield asname or full.partition(".")[0]
 
 
 def _calls_in(function: ast.AST) -> Iterator[ast.Call]:

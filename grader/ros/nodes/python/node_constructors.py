@@ -4,7 +4,7 @@ import ast
 from collections.abc import Collection, Iterator
 
 from grader.ros.nodes.node_facts import CodeFault
-from grader.ros.nodes.python.called_functions import methods_of
+from grader.ros.nodes.python.called_functions import methods_of, names_bound_by
 from grader.ros.python.constants import dotted
 from grader.ros.python.parse import Code, location_in, position_of
 from grader.ros.python.walking import children, walk
@@ -21,8 +21,9 @@ _NEED_NODE = frozenset(
         *("get_namespace", "get_topic_names_and_types", "destroy_node"),
     }
 )
-# What is evaluated later, or perhaps not at all.
+# What is evaluated later, or perhaps not at all, or of which errors may be suppressed.
 _UNCERTAIN = (
+    *(ast.With, ast.AsyncWith),
     *(ast.If, ast.For, ast.AsyncFor, ast.While, ast.Try, ast.Match, ast.IfExp, ast.BoolOp),
     *(ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda, ast.comprehension),
 )
@@ -46,7 +47,7 @@ def early_uses(code: Code, owner: ast.ClassDef, replaced: Collection[str]) -> It
         before.append(statement)
     else:
         return
-    known = {*methods, *replaced}
+    known = {*replaced, *(name for node in owner.body for name in names_bound_by(node))}
     for statement in before:
         called = _first_need(statement, owner, known)
         if called is not None:

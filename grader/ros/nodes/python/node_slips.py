@@ -17,7 +17,7 @@ from grader.base.source import Edit
 from grader.ros.known.package_tables import python_table
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import given_argument
-from grader.ros.nodes.python.branches import calls_in_branches
+from grader.ros.nodes.python.branches import INTERRUPTS, calls_in_branches
 from grader.ros.nodes.python.called_functions import (
     CalledFunctions,
     imported_names,
@@ -31,8 +31,6 @@ from grader.ros.python.walking import children, walk
 
 _MAX_NAMES = 20  # that are not defined
 _GLOBAL = frozenset({*dir(builtins), "__file__", "__name__", "__doc__", "__spec__"})
-# What a handler of these does not keep from stopping the program.
-_INTERRUPTS = frozenset({"KeyboardInterrupt", "SystemExit", "ExternalShutdownException"})
 # Modules that students forget to import, and names in modules.
 _MODULES = ("rclpy", "math", "time", "os", "sys", "random")
 _IMPORTED = {"Node": "rclpy.node"}
@@ -184,7 +182,7 @@ class _NodeSlips:
                 return [body] if is_run else []
             case ast.Try(body=body, handlers=handlers, finalbody=final):
                 names = {dotted(kind).rpartition(".")[2] for kind in _types(handlers)}
-                return [body, final] if names <= _INTERRUPTS else [final]
+                return [body, final] if names <= INTERRUPTS else [final]
             case ast.With(items=items, body=body):
                 is_caught = any("suppress" in dotted(_function_of(context)) for context in items)
                 return [] if is_caught else [body]

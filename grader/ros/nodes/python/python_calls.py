@@ -65,6 +65,7 @@ _KIND_WORDS: Mapping[ArgumentKind, str] = {
     "node class": "a class",
 }
 _INSTANCES = ("msg", "request", "goal", "node")  # what an instance of a class is given to
+_SECTIONS = {"request": "Request", "goal": "Goal"}  # of a type, whose instance is given
 _MAX_SHOWN = 40  # characters of an argument
 _FILLED = {"qos_profile": "10"}  # what is assumed where an argument is missing
 _ANYTHING = "..."
@@ -296,7 +297,9 @@ def _refused(written: Written, shown: str, signature: _Signature) -> WrongCall |
             text = cut(written.source.text[slice(*written.span_of(argument))], _MAX_SHOWN)
             reaction = f"{shown} gets {_KIND_WORDS[kind]}, {text}, in place of {expected}"
             if kind in ("type", "node class") and name in _INSTANCES:
-                reaction = f"{reaction}; write {text}()"
+                section = _SECTIONS.get(name, "")
+                made = text if not section or text.endswith(f".{section}") else f"{text}.{section}"
+                reaction = f"{reaction}; write {made}()"
             return WrongCall(reaction, "", ())
     return None
 

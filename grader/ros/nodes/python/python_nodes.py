@@ -39,7 +39,7 @@ from grader.ros.nodes.node_facts import (
     Timer,
     TypeImport,
 )
-from grader.ros.nodes.python.branches import calls_in_branches
+from grader.ros.nodes.python.branches import calls_caught, calls_in_branches
 from grader.ros.nodes.python.broadcast_transforms import SENDS, SendingMethod, sent_transforms
 from grader.ros.nodes.python.code_faults import ModuleText, attributes_in, code_faults
 from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bindings
@@ -700,12 +700,22 @@ class _Module:
         """Yield an endpoint for each name that an argument of a call gives it."""
         for text, parts in self._names(part, call, position, name):
             is_conditional = call in self._conditional_calls
-            yield endpoint._replace(name=text, parts=parts, is_conditional=is_conditional)
+            yield endpoint._replace(
+                name=text,
+                parts=parts,
+                is_conditional=is_conditional,
+                is_caught=call in self._caught_calls,
+            )
 
     @cached_property
     def _conditional_calls(self) -> frozenset[ast.Call]:
         """The calls that a condition decides, searched once."""
         return calls_in_branches(self._code.tree)
+
+    @cached_property
+    def _caught_calls(self) -> frozenset[ast.Call]:
+        """The calls whose errors may be caught, searched once."""
+        return calls_caught(self._code.tree)
 
     def _names(
         self, part: CodePart, call: ast.Call, position: int, name: str

@@ -96,7 +96,7 @@ def _invalid_names(node: NodeFacts) -> Iterator[Mismatch]:
         yield Mismatch(NAME_VALID, message, node.named_at or node.location)
     for endpoint in node.endpoints:
         reason = why_no_topic(endpoint.name) if endpoint.name else ""
-        if reason:
+        if reason and not endpoint.is_caught:
             name = f"the name {endpoint.name!r} of the {endpoint.kind}"
             message = f"{name} is not valid, so the node stops: {reason}"
             yield Mismatch(NAME_VALID, message, endpoint.location)
