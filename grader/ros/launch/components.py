@@ -91,13 +91,9 @@ def load_by_command(findings: Findings, call: Call, words: list[str], when: bool
 
 def _with_options(node: StartedNode, options: list[str]) -> StartedNode | None:
     """Return a node with what the options of its command give it; None if they are not known."""
-    names, words = options[::2], options[1::2]
-    is_known = len(names) == len(words) and {*names} <= {*_OF_NODE, *_OF_NO_NODE}
-    if not is_known or any(PART_UNKNOWN in word for word in words):
+    given = _words_by_option(options)
+    if given is None:
         return None
-    given: dict[str, list[str]] = {}
-    for name, word in zip(names, words, strict=True):
-        given.setdefault(name, []).append(word)
     rules = remap_rules(_words_of(given, _REMAP))
     parameters = parameters_in_words(_words_of(given, _PARAMETER), node.location)
     return node._replace(
@@ -107,6 +103,18 @@ def _with_options(node: StartedNode, options: list[str]) -> StartedNode | None:
         parameters=tuple(parameters),
         arguments=(),
     )
+
+
+def _words_by_option(options: list[str]) -> dict[str, list[str]] | None:
+    """Return what is behind each option; None if they are not known."""
+    names, words = options[::2], options[1::2]
+    is_known = len(names) == len(words) and {*names} <= {*_OF_NODE, *_OF_NO_NODE}
+    if not is_known or any(PART_UNKNOWN in word for word in words):
+        return None
+    given: dict[str, list[str]] = {}
+    for name, word in zip(names, words, strict=True):
+        given.setdefault(name, []).append(word)
+    return given
 
 
 def _words_of(given: Mapping[str, Sequence[str]], options: Sequence[str]) -> list[str]:

@@ -210,7 +210,7 @@ class UnresolvedPart(NamedTuple):
 # The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in
 # a <visual>, "" for more children than are known. Empty for a plain URDF.
 UnresolvedParts = Mapping[str, UnresolvedPart]
-NOTHING_OPEN: UnresolvedParts = {}
+_NOTHING_OPEN: UnresolvedParts = {}
 
 
 @_compared_by_values
@@ -224,7 +224,7 @@ class Material(NamedTuple):
     rgba: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
     texture: str = ""
     location: LazyLocation | None = None
-    unresolved: UnresolvedParts = NOTHING_OPEN
+    unresolved: UnresolvedParts = _NOTHING_OPEN
 
 
 @_compared_by_values
@@ -275,7 +275,7 @@ class Link(NamedTuple):
     collisions: tuple[Collision, ...] = ()
     inertial: Inertial | None = None
     location: LazyLocation | None = None
-    unresolved: UnresolvedParts = NOTHING_OPEN
+    unresolved: UnresolvedParts = _NOTHING_OPEN
 
     @property
     def known(self) -> "Link":
@@ -371,7 +371,7 @@ class Joint(NamedTuple):
     calibration: Calibration | None = None
     location: LazyLocation | None = None
     axis_location: LazyLocation | None = None
-    unresolved: UnresolvedParts = NOTHING_OPEN
+    unresolved: UnresolvedParts = _NOTHING_OPEN
 
     @property
     def has_position(self) -> bool:

@@ -103,11 +103,6 @@ def _closed_field(field: str) -> Any:
     return property(lambda view: getattr(view.known, field))
 
 
-def _show(view: object, known: object) -> None:
-    """Set what a view shows, its only field, as the constructors of frozen dataclasses do."""
-    object.__setattr__(view, "_known", known)
-
-
 class _MaterialView(Material):
     """A material of which something is open.
 
@@ -206,7 +201,7 @@ class _IncompleteRobot(Robot):
     _known: Robot
 
     def __init__(self, known: Robot) -> None:
-        _show(self, known)
+        object.__setattr__(self, "_known", known)  # as frozen dataclasses do
 
     @property
     def known(self) -> Robot:
