@@ -1013,8 +1013,13 @@ def _may_spin(modules: Sequence[ModuleText]) -> bool:
     """Return whether modules may spin a node, or ask a TransformListener to do so."""
     if any("spin_thread" in module.code.source.text for module in modules):
         return True
-    imported = {name.rpartition(".")[2] for module in modules for name in module.imports}
-    return not _SPINS.isdisjoint(imported.union(_count_names(modules)))
+    names = {*_count_names(modules)}
+    for module in modules:
+        names.update(name.rpartition(".")[2] for name in module.imports)
+        for node in every_node(module.code.tree):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                names.add(node.value)  # which getattr() may be given
+    return not _SPINS.isdisjoint(names)
 
 
 def _only_waits(body: Sequence[ast.stmt]) -> bool:
