@@ -283,6 +283,8 @@ class _Search:
             if not isinstance(part.node, ast.Module)
         }
         self._registered = [*self._find_registered()]
+        # The functions that are given as callbacks, by the expressions, searched once.
+        self._given: dict[ast.expr, ast.FunctionDef | ast.AsyncFunctionDef | None] = {}
 
     def _find_registered(self) -> Iterator[_Registered]:
         for part in self._module.parts:
@@ -367,7 +369,8 @@ class _Search:
     def called_callbacks(self) -> Iterator[CodeFault]:
         """Yield callbacks that are called in place of passed."""
         for registered in self._registered:
-            if not isinstance(registered.given, ast.Call):
+            is_of_rclpy = self._is_of_rclpy(registered.call, registered.part)
+            if not is_of_rclpy or not isinstance(registered.given, ast.Call):
                 continue
             function = self._function(registered.given.func, registered.part)
             if function is None or function.decorator_list:
@@ -415,11 +418,13 @@ class _Search:
 
     def _callback(self, registered: _Registered) -> ast.FunctionDef | ast.AsyncFunctionDef | None:
         """Return the function that surely is given; None if it may be another one."""
-        if not self._is_of_rclpy(registered.call, registered.part):
-            return None
         given, part = registered.given, registered.part
-        function = find_function(self._code, part, given, self._callback_classes)
-        return function if not isinstance(function, ast.Lambda) else None
+        if given not in self._given:
+            function = None
+            if self._is_of_rclpy(registered.call, part):
+                function = find_function(self._code, part, given, self._callback_classes)
+            self._given[given] = None if isinstance(function, ast.Lambda) else function
+        return self._given[given]
 
     def without_response(self) -> Iterator[CodeFault]:
         """Yield callbacks of services and actions that return nothing."""
@@ -468,10 +473,13 @@ class _Search:
             return
         clients = {
             dotted(node.targets[0])
-            for node in every_node(self._code.tree)
+            for part in self._module.parts
+            if part.of is not None
+            for node in walk(part.node)
             if isinstance(node, ast.Assign)
             and isinstance(node.value, ast.Call)
             and dotted(node.value.func) == "self.create_client"
+            and self._is_of_rclpy(node.value, part)
         }
         for function in self._reached():
             for call in _calls_in(function):
@@ -729,7 +737,7 @@ class _Search:
         spinning = [name for name in names if name in _SPINS]
         if spinning != ["spin_once"] or names["spin_once"] != 1 or self._is_imported():
             return
-        if "spin_thread" in self._code.source.text:
+        if any("spin_thread" in module.code.source.text for module in reached):
             return
         kinds = [registered.by for registered in self._registered]
         for call in self._calls_run_once():
