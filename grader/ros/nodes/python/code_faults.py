@@ -693,12 +693,11 @@ class _Search:
         return any(
             registered.call not in conditional
             and registered.part.name in called
-            and (registered.part.of is None or self._class_name(registered.part.of) in made)
+            and (
+                registered.part.of is None or self._module.classes[registered.part.of].name in made
+            )
             for registered in self._registered
         )
-
-    def _class_name(self, at: Location) -> str:
-        return self._module.classes[at].name
 
     def _may_work_in_loops(self, modules: Sequence[ModuleText]) -> bool:
         """Return whether a loop of a program may do something, in place of its callbacks.
