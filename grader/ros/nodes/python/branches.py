@@ -45,8 +45,10 @@ def calls_caught(tree: ast.Module) -> frozenset[ast.Call]:
             case _:
                 pending += children(node)
                 continue
-        calls.update(part for each in inside for part in walk(each) if isinstance(part, ast.Call))
-        pending += [child for child in children(node) if child not in inside]
+        for statement in inside:
+            calls.update(part for part in walk(statement) if isinstance(part, ast.Call))
+        caught = {*inside}
+        pending += [child for child in children(node) if child not in caught]
     return frozenset(calls)
 
 

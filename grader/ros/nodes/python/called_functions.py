@@ -55,8 +55,10 @@ class CalledFunctions:
         self._lost = rebound
         classes = [node for node in nodes if isinstance(node, ast.ClassDef)]
         self._bound_in = {owner: _names_in(owner) for owner in classes}
+        self._named: dict[str, list[ast.ClassDef]] = {}  # the classes of each name
         self._owners: dict[ast.AST, list[ast.ClassDef]] = {}  # the classes that calls are in
         for owner in classes:
+            self._named.setdefault(owner.name, []).append(owner)
             for node in walk(owner):
                 if isinstance(node, ast.Call):
                     self._owners.setdefault(node, []).append(owner)
@@ -135,7 +137,7 @@ class CalledFunctions:
         if len(made) != 1 or self._stored[name.rpartition(".")[2]] != 1:
             return False
         full = self._full_name(made[0].func)
-        owners = [owner for owner in self._bound_in if owner.name == dotted(made[0].func)]
+        owners = self._named.get(dotted(made[0].func), ())
         is_own = len(owners) == 1 and self._is_node_class(owners[0], method)
         return is_own or full in _PLAIN_NODES or full == "rclpy.create_node"
 

@@ -283,6 +283,8 @@ class _Search:
             if not isinstance(part.node, ast.Module)
         }
         self._registered = [*self._find_registered()]
+        # The functions that are given as callbacks, by the expressions, searched once.
+        self._given: dict[ast.expr, ast.FunctionDef | ast.AsyncFunctionDef | None] = {}
 
     def _find_registered(self) -> Iterator[_Registered]:
         for part in self._module.parts:
@@ -367,7 +369,8 @@ class _Search:
     def called_callbacks(self) -> Iterator[CodeFault]:
         """Yield callbacks that are called in place of passed."""
         for registered in self._registered:
-            if not isinstance(registered.given, ast.Call):
+            is_of_rclpy = self._is_of_rclpy(registered.call, registered.part)
+            if not is_of_rclpy or not isinstance(registered.given, ast.Call):
                 continue
             function = self._function(registered.given.func, registered.part)
             if function is None or function.decorator_list:
@@ -415,11 +418,13 @@ class _Search:
 
     def _callback(self, registered: _Registered) -> ast.FunctionDef | ast.AsyncFunctionDef | None:
         """Return the function that surely is given; None if it may be another one."""
-        if not self._is_of_rclpy(registered.call, registered.part):
-            return None
         given, part = registered.given, registered.part
-        function = find_function(self._code, part, given, self._callback_classes)
-        return function if not isinstance(function, ast.Lambda) else None
+        if given not in self._given:
+            function = None
+            if self._is_of_rclpy(registered.call, part):
+                function = find_function(self._code, part, given, self._callback_classes)
+            self._given[given] = None if isinstance(function, ast.Lambda) else function
+        return self._given[given]
 
     def without_response(self) -> Iterator[CodeFault]:
         """Yield callbacks of services and actions that return nothing."""
@@ -468,10 +473,13 @@ class _Search:
             return
         clients = {
             dotted(node.targets[0])
-            for node in every_node(self._code.tree)
+            for part in self._module.parts
+            if part.of is not None
+            for node in walk(part.node)
             if isinstance(node, ast.Assign)
             and isinstance(node.value, ast.Call)
             and dotted(node.value.func) == "self.create_client"
+            and self._is_of_rclpy(node.value, part)
         }
         for function in self._reached():
             for call in _calls_in(function):
@@ -693,12 +701,11 @@ class _Search:
         return any(
             registered.call not in conditional
             and registered.part.name in called
-            and (registered.part.of is None or self._class_name(registered.part.of) in made)
+            and (
+                registered.part.of is None or self._module.classes[registered.part.of].name in made
+            )
             for registered in self._registered
         )
-
-    def _class_name(self, at: Location) -> str:
-        return self._module.classes[at].name
 
     def _may_work_in_loops(self, modules: Sequence[ModuleText]) -> bool:
         """Return whether a loop of a program may do something, in place of its callbacks.
@@ -1019,8 +1026,13 @@ def _may_spin(modules: Sequence[ModuleText]) -> bool:
     """Return whether modules may spin a node, or ask a TransformListener to do so."""
     if any("spin_thread" in module.code.source.text for module in modules):
         return True
-    imported = {name.rpartition(".")[2] for module in modules for name in module.imports}
-    return not _SPINS.isdisjoint(imported.union(_count_names(modules)))
+    names = {*_count_names(modules)}
+    for module in modules:
+        names.update(name.rpartition(".")[2] for name in module.imports)
+        for node in every_node(module.code.tree):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                names.add(node.value)  # which getattr() may be given
+    return not _SPINS.isdisjoint(names)
 
 
 def _only_waits(body: Sequence[ast.stmt]) -> bool:
