@@ -60,10 +60,11 @@ def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
     for line in _warnings(book, mark):
         warn(printable(line))
     grade = now.grade(mark.student)
-    is_deadline = mark.criterion == DEADLINE and mark.value != WITHDRAWN
-    if is_deadline and grade.late.days and not grade.late.is_timed:
-        warn(_NO_TIME)
-    late = f"; {grade.late.reason}" if mark.criterion == DEADLINE and grade.late.reason else ""
+    late = ""
+    if mark.criterion == DEADLINE:
+        late = f"; {grade.late.reason}" if grade.late.reason else ""
+        if mark.value != WITHDRAWN and grade.late.days and not grade.late.is_timed:
+            warn(_NO_TIME)
     line = f"{named(mark.student, grade.student.name)}: {_grade_text(now, grade)}{late}"
     return f"{printable(line)}\n"
 

@@ -54,8 +54,7 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, (*_ENDINGS, *_BUILDS)):
             code = _code_of(source)
-            if _FROM_MAPPING.search(code) or (_REFUSING.search(code) and _may_refuse(code)):
-                may_refuse = True
+            may_refuse = may_refuse or _may_refuse(code)
             for pattern in (_REFUSING, _TOLD, _REFUSES, _LIMITS, _GENERATES, _READS):
                 match = pattern.search(code)
                 if match is not None:
@@ -78,7 +77,12 @@ def _code_of(source: Source) -> str:
 
 
 def _may_refuse(code: str) -> bool:
-    """Return whether a condition may decide that a result is successful, or an error ends it."""
+    """Return whether a condition may decide that a result is successful, or an error ends it.
+
+    A descriptor that is made from a mapping may do so, too.
+    """
+    if _FROM_MAPPING.search(code) or not _REFUSING.search(code):
+        return _FROM_MAPPING.search(code) is not None
     lines = [line.partition("successful") for line in code.split("\n")]
     if _THROWS.search(code) or any(word and _CONDITION.search(start) for start, word, _ in lines):
         return True

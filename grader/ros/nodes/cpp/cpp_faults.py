@@ -6,7 +6,7 @@ Each rule is about what certainly fails once it runs.
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import chain, islice
+from itertools import chain
 
 from grader.ros.cpp.declarations import CppFunction, declared_in, plain
 from grader.ros.cpp.objects import class_written
@@ -157,7 +157,11 @@ class _CppSearch:
     def rejected_goals(self) -> Iterator[CodeFault]:
         """Yield action servers in files in which goals are rejected, and none is accepted."""
         uses = self._unit.uses
-        rejections = [node for node in uses.get(_REJECTS, ()) if not _is_of_cancelling(node)]
+        rejections = []
+        for node in uses.get(_REJECTS, ()):
+            # Who cancels a goal is answered by the same word.
+            if node.parent is None or _CANCEL_ANSWER not in node.parent.text:
+                rejections.append(node)
         if not rejections or not uses.keys().isdisjoint(_ACCEPTS):
             return
         for function in self._methods:
@@ -392,11 +396,6 @@ def _may_wait(function: CppFunction, unit: CppUnit) -> bool:
         return True
     calls = [call for call in unit.calls_in(function) if call.kind == "call_expression"]
     return any(_SPINNING.search(called_name(call).rpartition("::")[2]) for call in calls)
-
-
-def _is_of_cancelling(node: CppNode) -> bool:
-    """Return whether a name is one of the answers to who cancels a goal."""
-    return any(_CANCEL_ANSWER in around.text for around in islice(node.ancestors(), 1))
 
 
 def _outermost_member(node: CppNode) -> CppNode:

@@ -37,35 +37,37 @@ class CalledFunctions:
     ) -> None:
         """Search in the nodes of the code; `imports` has the full names of what it imports."""
         self._code, self._releases = code, releases
-        self._stored = Counter(  # how often a variable or an attribute is bound
-            getattr(node, "id", getattr(node, "attr", ""))
-            for node in nodes
-            if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
-        )
-        parameters = {node.arg for node in nodes if isinstance(node, ast.arg)}
-        self._defined = {
-            node.name
-            for node in nodes
-            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
-        }
-        self._rebound = parameters.union(self._stored)
+        self._stored = _count_bound(nodes)
+        self._rebound, self._defined = {*self._stored}, set[str]()
+        self._bound_in: dict[ast.ClassDef, set[str]] = {}  # the names that bodies of classes bind
+        self._named: dict[str, list[ast.ClassDef]] = {}  # the classes of each name
+        self._owners: dict[ast.AST, list[ast.ClassDef]] = {}  # the classes that calls are in
+        for node in nodes:
+            self._add(node)
         rebound = self._rebound | self._defined | _names_of_several_imports(nodes)
         # The names that the module certainly imports, and does not bind to anything else.
         self._imports = {name: full for name, full in imports.items() if name not in rebound}
         self._lost = rebound
-        classes = [node for node in nodes if isinstance(node, ast.ClassDef)]
-        self._bound_in = {owner: _names_in(owner) for owner in classes}
-        self._named: dict[str, list[ast.ClassDef]] = {}  # the classes of each name
-        self._owners: dict[ast.AST, list[ast.ClassDef]] = {}  # the classes that calls are in
-        for owner in classes:
-            self._named.setdefault(owner.name, []).append(owner)
-            for node in walk(owner):
-                if isinstance(node, ast.Call):
-                    self._owners.setdefault(node, []).append(owner)
-        made: dict[str, list[ast.Call]] = {}
-        for target, call in _calls_bound(node for node in nodes if isinstance(node, ast.stmt)):
-            made.setdefault(target, []).append(call)
-        self._made = made
+        self._made = _calls_bound(nodes)
+
+    def _add(self, node: ast.AST) -> None:
+        """Keep the names that a node binds, and its calls if it is a class."""
+        if isinstance(node, ast.arg):
+            self._rebound.add(node.arg)
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            self._defined.add(node.name)
+        if isinstance(node, ast.ClassDef):
+            self._add_class(node)
+
+    def _add_class(self, owner: ast.ClassDef) -> None:
+        bound: set[str] = set()
+        for statement in owner.body:
+            bound.update(names_bound_by(statement))
+        self._bound_in[owner] = bound
+        self._named.setdefault(owner.name, []).append(owner)
+        for node in walk(owner):
+            if isinstance(node, ast.Call):
+                self._owners.setdefault(node, []).append(owner)
 
     def wrong_call(
         self,
@@ -194,11 +196,14 @@ def made_in(statements: Iterable[ast.stmt]) -> Iterator[tuple[str, str]]:
         yield target, dotted(call.func)
 
 
-def _calls_bound(statements: Iterable[ast.stmt]) -> Iterator[tuple[str, ast.Call]]:
-    for statement in statements:
-        match statement:
-            case ast.Assign(targets=[ast.Name() | ast.Attribute() as to], value=ast.Call() as made):
-                yield dotted(to), made
+def _calls_bound(nodes: Iterable[ast.AST]) -> dict[str, list[ast.Call]]:
+    """Return the calls whose results are bound, by the variable or attribute."""
+    made: dict[str, list[ast.Call]] = {}
+    for node in nodes:
+        match node:
+            case ast.Assign(targets=[ast.Name() | ast.Attribute() as to], value=ast.Call() as call):
+                made.setdefault(dotted(to), []).append(call)
+    return made
 
 
 def _names_of_several_imports(nodes: Iterable[ast.AST]) -> set[str]:
@@ -210,9 +215,13 @@ def _names_of_several_imports(nodes: Iterable[ast.AST]) -> set[str]:
     return {name for name, full_names in names.items() if len(full_names) > 1}
 
 
-def _names_in(owner: ast.ClassDef) -> frozenset[str]:
-    """Return the names that the body of a class binds."""
-    return frozenset(name for node in owner.body for name in names_bound_by(node))
+def _count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
+    """Return how often a variable or an attribute is bound."""
+    bound: Counter[str] = Counter()
+    for node in nodes:
+        if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del):
+            bound[getattr(node, "id", getattr(node, "attr", ""))] += 1
+    return bound
 
 
 def names_bound_by(node: ast.stmt) -> Iterator[str]:

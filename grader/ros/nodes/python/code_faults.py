@@ -693,19 +693,20 @@ class _Search:
         called, made = {"", "main", "__init__"}, set[str]()
         for part in self._module.parts:
             names = {last_name(call.func) for call in part.calls if call not in conditional}
-            called |= {*names, part.name} if init in part.calls else names
-            made |= names if part.of is None else set()
+            called |= names
+            if init in part.calls:
+                called.add(part.name)
+            if part.of is None:
+                made |= names
         for node in reversed([*self._module.classes.values()]):  # which are below their bases
             if node.name in made:
                 made.update(last_name(base) for base in node.bases)
-        return any(
-            registered.call not in conditional
-            and registered.part.name in called
-            and (
-                registered.part.of is None or self._module.classes[registered.part.of].name in made
-            )
-            for registered in self._registered
-        )
+        for registered in self._registered:
+            of = registered.part.of
+            is_made = of is None or self._module.classes[of].name in made
+            if is_made and registered.call not in conditional and registered.part.name in called:
+                return True
+        return False
 
     def _may_work_in_loops(self, modules: Sequence[ModuleText]) -> bool:
         """Return whether a loop of a program may do something, in place of its callbacks.

@@ -40,15 +40,8 @@ def early_uses(code: Code, owner: ast.ClassDef, replaced: Collection[str]) -> It
         _initialises(method) for name, method in methods.items() if name != "__init__"
     ):
         return
-    before: list[ast.stmt] = []
-    for statement in constructor.body:
-        if _initialises(statement):
-            break
-        before.append(statement)
-    else:
-        return
     known = {*replaced, *(name for node in owner.body for name in names_bound_by(node))}
-    for statement in before:
+    for statement in _statements_before(constructor):
         called = _first_need(statement, owner, known)
         if called is not None:
             message = (
@@ -59,6 +52,14 @@ def early_uses(code: Code, owner: ast.ClassDef, replaced: Collection[str]) -> It
                 "used too early", message, location_in(code.source, position_of(called))
             )
             return
+
+
+def _statements_before(constructor: ast.FunctionDef | ast.AsyncFunctionDef) -> list[ast.stmt]:
+    """Return the statements before that with super().__init__(); none where there is none."""
+    for position, statement in enumerate(constructor.body):
+        if _initialises(statement):
+            return constructor.body[:position]
+    return []
 
 
 def _initialises(node: ast.AST) -> bool:

@@ -725,17 +725,12 @@ def _missing_section(use: Use, mapping: Mapping[str, YamlNode]) -> Iterator[Use 
     if use.optional or use.name in mapping:
         yield use
         return
-    holders: list[str] = []
-    for name, beside in mapping.items():
-        inner = beside.get(use.name)
-        if inner is not None and isinstance(inner.value, dict):
-            holders.append(name)
+    holders = _sections_with(use.name, mapping)
     if len(holders) != 1:
         yield use
         return
-    [holder] = holders
-    section = mapping[holder].get(use.name)
-    if use.said != _SOURCES and (section is None or section.get("plugin") is None):
+    [(holder, section)] = holders.items()
+    if use.said != _SOURCES and section.get("plugin") is None:
         return
     message = f"the section {use.name!r} is in {holder!r}, but belongs beside {use.said}"
     is_layer = holder.endswith("layer") or mapping[holder].get("plugin") is not None
@@ -745,6 +740,16 @@ def _missing_section(use: Use, mapping: Mapping[str, YamlNode]) -> Iterator[Use 
             "it here"
         )
     yield Mismatch(DEFINED["plugin section"], message, use.location, word=use.name)
+
+
+def _sections_with(name: str, mapping: Mapping[str, YamlNode]) -> dict[str, YamlNode]:
+    """Return the sections of a name in the sections of a mapping, by the names of these."""
+    sections: dict[str, YamlNode] = {}
+    for holder, beside in mapping.items():
+        inner = beside.get(name)
+        if inner is not None and isinstance(inner.value, dict):
+            sections[holder] = inner
+    return sections
 
 
 def _is_default(key: str, names: Sequence[str]) -> bool:
