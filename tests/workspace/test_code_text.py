@@ -14,7 +14,7 @@ from grader.ros.workspace.model.code_text import code_alone
             'def f():\n    """Say "x"\n\n    and y."""\n    return y',
             "def f():\n\n\n\n    return y",
         ),
-        ("a.py", "a = '''b'c\\'d''' + e", "a =             + e"),
+        ("a.py", "a = '''b'c\\'d''' + e", "a =              + e"),
         ("a.py", "f'at {place:.2f}' + rf\"{x}\"", "f    {place:.2f}  + rf {x}"),
         ("a.py", "'open\na", "\na"),
         ("a.py", '"""open\na', "\n"),

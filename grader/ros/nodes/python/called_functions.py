@@ -192,8 +192,8 @@ class CalledFunctions:
 
 def made_in(statements: Iterable[ast.stmt]) -> Iterator[tuple[str, str]]:
     """Yield the variables and attributes that statements bind, with what their calls make."""
-    for target, call in _calls_bound(statements):
-        yield target, dotted(call.func)
+    for target, calls in _calls_bound(statements).items():
+        yield from ((target, dotted(call.func)) for call in calls)
 
 
 def _calls_bound(nodes: Iterable[ast.AST]) -> dict[str, list[ast.Call]]:

@@ -72,7 +72,7 @@ def looked_up_transforms(workspace: Workspace) -> tuple[Sequence[_LookedUp], boo
     texts = _texts_with_lookups(workspace) if lookups else {}
     inverting = {path: _inverts(code_alone(text, path)) for path, text in texts.items()}
     # A file may leave the inversion to a function of another one.
-    others: _Inverting = "no" if {*inverting.values()} <= {"no"} else "perhaps"
+    others: _Inverting = "perhaps" if "yes" in inverting.values() else "no"
     known = []
     for lookup in lookups:
         inverts = inverting.get(lookup.location.path, "no")

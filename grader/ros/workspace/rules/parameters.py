@@ -720,7 +720,7 @@ def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[De
 def _missing_section(use: Use, mapping: Mapping[str, YamlNode]) -> Iterator[Use | Mismatch]:
     """Yield that the section of a plugin is in one that is beside its list, or else its use.
 
-    A section without a class is of no plugin: what reads it may find it there.
+    Sections without any class are of no plugins: what reads them may find them there.
     """
     if use.optional or use.name in mapping:
         yield use
@@ -730,7 +730,8 @@ def _missing_section(use: Use, mapping: Mapping[str, YamlNode]) -> Iterator[Use 
         yield use
         return
     [(holder, section)] = holders.items()
-    if use.said != _SOURCES and section.get("plugin") is None:
+    sections = [section, *mapping.values()]
+    if use.said != _SOURCES and all(one.get("plugin") is None for one in sections):
         return
     message = f"the section {use.name!r} is in {holder!r}, but belongs beside {use.said}"
     is_layer = holder.endswith("layer") or mapping[holder].get("plugin") is not None
