@@ -8,6 +8,7 @@ from grader.base.errors import InputError
 from grader.lab.checks.check import About, describe
 from grader.lab.checks.outcome import Outcome, passed
 from grader.ros.package.package import Package
+from grader.ros.urdf.kinematics import Configuration
 from tests.checks.cases import PACKAGE_CASES, Case
 from tests.checks.outcomes import ask, graded
 from tests.checks.submissions import (
@@ -101,3 +102,17 @@ def test_a_check_of_another_module_may_declare_it(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(sys.modules[__name__], "ABOUT", {"has_driver": ("launch",)})
     with pytest.raises(InputError, match=r"^ABOUT says of has_driver what is no About\(\.\.\.\)$"):
         describe(has_driver)
+
+
+def test_annotations_may_be_texts() -> None:
+    """As in a module that imports annotations from __future__."""
+
+    def has_wheels(robot: "Configuration", *, wheels: "int", tolerance: float = 0.0) -> "Outcome":
+        """The robot has wheels."""
+        return passed(f"{robot.robot.name} has {wheels} wheels, within {tolerance}")
+
+    parameters = describe(has_wheels).parameters
+    assert {name: parameter.type.name for name, parameter in parameters.items()} == {
+        "wheels": "a whole number",
+        "tolerance": "a number",
+    }
