@@ -27,7 +27,7 @@ from grader.ros.xacro.scopes import (
     XacroFails,
     XacroScope,
 )
-from grader.ros.xml.tinyxml2 import ILLEGAL
+from grader.ros.xml.elements import ILLEGAL
 
 # The tokens of xacro's lexer (`eval_text`), where ${'}'} ends at the first brace, too.
 PIECE = re.compile(

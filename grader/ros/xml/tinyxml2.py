@@ -15,6 +15,7 @@ from typing import Literal, NamedTuple
 from grader.base.problems import Kind
 from grader.base.text import cut
 from grader.ros.xml import xml_problems
+from grader.ros.xml.elements import ILLEGAL
 from grader.ros.xml.urdf_format import TAGS
 
 # --- Attribute values
@@ -38,9 +39,6 @@ _ESCAPES = str.maketrans(
 
 # A bare & or an entity that XML does not define.
 _BARE_AMPERSAND = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
-# Characters that XML 1.0 does not allow, not even as a reference; bytes that are not UTF-8 are
-# surrogates here.
-ILLEGAL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def decode(raw: str) -> str:
