@@ -303,14 +303,14 @@ def test_every_test_that_the_table_of_attacks_names_exists() -> None:
 
 
 def test_the_pages_stay_short() -> None:
-    """The README has at most 700 words, and all pages that are not generated have at most 23,450."""
+    """The README has at most 700 words, and all pages that are not generated have at most 26,000."""
     generated = (
         *("problems.md", "checks.md", "misconfigurations.md"),
         *("rubric-reference.md", "known-parameters.md", "rules.md"),
     )
     words = {
         page: len(page.read_text(encoding="utf-8").split())
-        for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+        for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]
     }
     assert words[ROOT / "README.md"] <= 700
-    assert sum(words[page] for page in words if page.name not in generated) <= 23_450
+    assert sum(words[page] for page in words if page.name not in generated) <= 26_000
