@@ -148,10 +148,10 @@ def test_inputs(job: Job) -> None:
     setup.write_text(setup.read_text(encoding="utf-8").replace("import os\n", ""), encoding="utf-8")
     assert job.grade().code == 1
     assert job.grade(fail_under="90%").code == 1
-    assert job.grade(fail_under="89").code == 0
+    assert job.grade(fail_under="88").code == 0
     assert job.grade(rubric="no-such-lab").code == 2
     assert job.grade(expect_rubric="0" * 64).code == 2
-    assert job.grade(fail_under="89", expect_rubric=load_rubric("lab6").sha256).code == 0
+    assert job.grade(fail_under="88", expect_rubric=load_rubric("lab6").sha256).code == 0
 
 
 def test_nothing_graded(job: Job, tmp_path: Path) -> None:
@@ -373,7 +373,7 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "victim").read_text() == "precious"
     result = json.loads((work / "result.json").read_text(encoding="utf-8"))
-    assert (result["owner"], result["score"], result["max-score"]) == ("ada", 89, 90)
+    assert (result["owner"], result["score"], result["max-score"]) == ("ada", 88, 90)
     assert "setup-imports" in (work / "release-body.md").read_text(encoding="utf-8")
     (work / "result.json").write_text('{"score": 90}')
     forged = subprocess.run(
