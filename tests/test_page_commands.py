@@ -113,7 +113,6 @@ OTHER_PROGRAMS = {  # commands of other programs in the text of the README and o
     "ssh -L 8000:127.0.0.1:8000 host": "needs another machine",
     "uv tool install .": "installs for the user; tried by hand with uv 0.13",
     "uvx --from . grader grade my_robot.urdf": "needs uv; tried by hand with uv 0.13",
-    "uv --resolution lowest-direct": "the job `bounds` in .github/workflows/ci.yml",
     "pipx install .": "installs for the user; tried by hand with pipx 1.18",
     "wsl --install": "needs Windows",
     "python -m grader": "an example of what not to do",

@@ -134,7 +134,7 @@ def test_ten_items_by_keys_alone(review: Review, open_page: Open, book: Path) ->
     for number in (9, 10):
         press(page, "1 Enter", str(number))
     press(page, "0 c 'a script' Enter", "end")
-    assert page.locator("h1").inner_text() == "1 mark left"
+    assert page.locator("h1").inner_text() == "1 mark still needed"
     assert rows_of(book) == ["3.5", "4", "2", "0", "4", "1", "0.5", "1", "-", "1", "1", "0"]
     assert marks_in(book) == [
         ("ash", "essay", "3.5", "the roots are missing"),

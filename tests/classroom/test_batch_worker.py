@@ -38,9 +38,9 @@ def damaged(name: str) -> bytes:
 
 CUT = zipped({"a.urdf": URDF})[:-30]
 UNREADABLE = {
-    "cut": ("lab6.zip", CUT, "lab6.zip cannot be read as an archive: File is not a zip file"),
-    "garbage": ("lab6.zip", b"garbage", "lab6.zip is not a readable archive"),
-    "rar": ("lab6.rar", b"Rar!\x1a\x07\x00", "lab6.rar is a rar archive, which is not supported"),
+    "cut": ("lab6.zip", CUT, "lab6.zip' cannot be read as an archive: File is not a zip file"),
+    "garbage": ("lab6.zip", b"garbage", "lab6.zip' is not a readable archive"),
+    "rar": ("lab6.rar", b"Rar!\x1a\x07\x00", "lab6.rar' is a rar archive, which is not supported"),
     "empty": ("lab6.zip", zipped({}), "lab6.zip is empty"),
     "checksum": ("lab6.zip", damaged("a.urdf"), "a.urdf: Bad CRC-32"),
     "large": ("a.urdf", LARGE, "a.urdf is larger than 1 MiB, the limit for a URDF"),
@@ -49,7 +49,7 @@ UNREADABLE = {
         zipped({"a.urdf": LARGE}),
         "a.urdf is larger than 1 MiB, the limit for a",
     ),
-    "nested": ("lab6.zip", zipped({"b.zip": CUT}), "b.zip cannot be read as an archive"),
+    "nested": ("lab6.zip", zipped({"b.zip": CUT}), "b.zip' cannot be read as an archive"),
 }
 
 
@@ -141,7 +141,7 @@ def test_several_archives_are_counted(tmp_path: Path) -> None:
     for name in ("a.zip", "b.zip", "c.zip"):
         (tmp_path / "ann" / name).write_bytes(b"garbage")
     assert graded(tmp_path, "ann").reason == (
-        "nothing to grade was found: a.zip is not a readable archive: it is damaged or empty "
+        "nothing to grade was found: 'a.zip' is not a readable archive: it is damaged or empty "
         "(and 2 more cannot be opened)"
     )
 

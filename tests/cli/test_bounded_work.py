@@ -304,7 +304,7 @@ def test_a_video_is_ignored_and_named(kind: str, tmp_path: Path) -> None:
     )  # what is decompressed has to be written first
     path = large_submission(kind, tmp_path / f"lab6.{kind}", size)
     output = bounded("grade", path, "--part", "task1", "--part", "task3", calls=_FEW_CALLS, code=0)
-    ignored = f"Task3_Step3.mp4 ({size // 1_000_000} MB) is larger than 64 MiB, the limit for one file, and was ignored"
+    ignored = f"'Task3_Step3.mp4' ({size // 1_000_000} MB) is larger than 64 MiB, the limit for one file, and was ignored"
     for words in (ignored, "evidence-webcam (2): Task3_Step3.mp4", "70/72"):
         assert words in output
 

@@ -69,7 +69,7 @@ def test_no_symlink_is_followed(tmp_path: Path) -> None:
     (tmp_path / "secret.urdf").write_text("<robot name='a'/>")
     (tmp_path / "sub/my_robot.urdf").symlink_to("../secret.urdf")
     done = elsewhere("grade", tmp_path / "sub")
-    assert "my_robot.urdf is a symlink, and was not followed" in done.stderr
+    assert "my_robot.urdf' is a symlink, and was not followed" in done.stderr
     (tmp_path / "sub/inner.urdf").write_bytes(
         (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_bytes()
     )

@@ -367,7 +367,8 @@ def _parameter_values(
     """Return what a value in a table gives by the names of parameters, with its place."""
     given_at = None
     if isinstance(value, Call) and location.line != value.at.line:
-        given_at = location
+        # In XML and YAML the place of the value is that of the parameter.
+        given_at = location if location.path.endswith(".py") else None
         location = location._replace(line=value.at.line, column=value.at.column)
     values = {}
     for name, given in evaluated.items():
