@@ -122,7 +122,7 @@ def test_an_encrypted_member_is_ignored(tmp_path: Path) -> None:
     tree = opened.folder("ann")
     assert set(tree.files) == {"b.urdf"}
     assert tuple(map(str, tree.ignored)) == ("'a.urdf' is encrypted, and was not read",)
-    with pytest.raises(InputError, match=r"a\.urdf is encrypted"):
+    with pytest.raises(InputError, match=r"a\.urdf' is encrypted"):
         opened.read("ann/a.urdf", 100)
 
 
