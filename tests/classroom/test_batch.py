@@ -195,7 +195,7 @@ def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
         shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", folder / name)
     grader("batch", folder, "--gradebook", book, "--reports", words)
     alone = grader("grade", folder / "ann").stdout
-    mistakes, counted, _ = alone.partition("Also to hand in")
+    mistakes, counted, _ = alone.partition("Not found yet")
     assert counted
     assert (words / "ann.txt").read_text().partition("Not found")[0] == mistakes.replace(
         "my_robot.urdf\n", "my_robot.urdf (ann)\n", 1

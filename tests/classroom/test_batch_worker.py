@@ -38,9 +38,9 @@ def damaged(name: str) -> bytes:
 
 CUT = zipped({"a.urdf": URDF})[:-30]
 UNREADABLE = {
-    "cut": ("lab6.zip", CUT, "lab6.zip' cannot be read as an archive: File is not a zip file"),
-    "garbage": ("lab6.zip", b"garbage", "lab6.zip' is not a readable archive"),
-    "rar": ("lab6.rar", b"Rar!\x1a\x07\x00", "lab6.rar' is a rar archive, which is not supported"),
+    "cut": ("lab6.zip", CUT, "lab6.zip cannot be read as an archive: File is not a zip file"),
+    "garbage": ("lab6.zip", b"garbage", "lab6.zip is not a readable archive"),
+    "rar": ("lab6.rar", b"Rar!\x1a\x07\x00", "lab6.rar is a rar archive, which is not supported"),
     "empty": ("lab6.zip", zipped({}), "lab6.zip is empty"),
     "checksum": ("lab6.zip", damaged("a.urdf"), "a.urdf: Bad CRC-32"),
     "large": ("a.urdf", LARGE, "a.urdf is larger than 1 MiB, the limit for a URDF"),
@@ -49,7 +49,7 @@ UNREADABLE = {
         zipped({"a.urdf": LARGE}),
         "a.urdf is larger than 1 MiB, the limit for a",
     ),
-    "nested": ("lab6.zip", zipped({"b.zip": CUT}), "b.zip' cannot be read as an archive"),
+    "nested": ("lab6.zip", zipped({"b.zip": CUT}), "b.zip cannot be read as an archive"),
 }
 
 
@@ -71,7 +71,9 @@ def test_the_folder_around_it_does_not_matter(kind: str, wrapped: str, tmp_path:
     folder.write_bytes(data)
     top = tmp_path / "class"
     result = graded(top, wrapped.partition("/")[0] or name)
-    assert (result.verdict, reason in result.reason) == ("unreadable", True), result.reason
+    assert (result.verdict, reason in result.reason.replace("'", "")) == ("unreadable", True), (
+        result.reason
+    )
     assert ("(--max-size raises it)" in result.reason) == kind.startswith("large")
     assert str(tmp_path) not in result.reason
 
