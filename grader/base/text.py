@@ -8,6 +8,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+# Characters that XML 1.0 does not allow, not even as a reference; bytes that are not UTF-8 are
+# surrogates here.
+ILLEGAL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 # The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space
 # as well, or contains `##[`; the agent of Azure Pipelines, if it contains `##vso[`.
 _LINE_COMMAND = re.compile(r"^([^\S\n]*+):(?=:)", re.MULTILINE)

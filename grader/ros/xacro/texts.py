@@ -6,6 +6,7 @@ from keyword import iskeyword
 from typing import Literal
 
 from grader.base.names import did_you_mean, near
+from grader.base.text import ILLEGAL
 from grader.ros.python.budget import Budget
 from grader.ros.python.expressions import evaluate
 from grader.ros.python.values import (
@@ -27,7 +28,6 @@ from grader.ros.xacro.scopes import (
     XacroFails,
     XacroScope,
 )
-from grader.ros.xml.elements import ILLEGAL
 
 # The tokens of xacro's lexer (`eval_text`), where ${'}'} ends at the first brace, too.
 PIECE = re.compile(

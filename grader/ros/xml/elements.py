@@ -5,10 +5,6 @@ import re
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import numbers_in
 
-# Characters that XML 1.0 does not allow, not even as a reference; bytes that are not UTF-8 are
-# surrogates here.
-ILLEGAL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
-
 _Scalar = str | float | bool
 
 _MADE_UP = re.compile(r"ns\d+")  # a prefix that lxml gives an element that is made, not read

@@ -13,9 +13,8 @@ from functools import cached_property
 from typing import Literal, NamedTuple
 
 from grader.base.problems import Kind
-from grader.base.text import cut
+from grader.base.text import ILLEGAL, cut
 from grader.ros.xml import xml_problems
-from grader.ros.xml.elements import ILLEGAL
 from grader.ros.xml.urdf_format import TAGS
 
 # --- Attribute values
