@@ -227,11 +227,11 @@ def _bindings(nodes: Sequence[ast.AST]) -> tuple[Counter[str], dict[str, ast.exp
             case ast.AnnAssign(target=target, value=ast.expr() as value):
                 values[dotted(target)] = value
             case _:
-                counts.update(_bound_by(part))
+                counts.update(bound_by(part))
     return counts, values
 
 
-def _bound_by(part: ast.AST) -> Sequence[str]:
+def bound_by(part: ast.AST) -> Sequence[str]:
     """Return the names with dots that one node binds or changes."""
     names: list[str] = []
     match part:

@@ -7,13 +7,14 @@ defines again or replaces.
 
 import ast
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 from grader.base.source import Location
 from grader.base.text import counted
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.nodes.node_facts import CodeFault
-from grader.ros.python.constants import dotted, last_name
+from grader.ros.python.constants import bound_by, dotted, last_name
 from grader.ros.python.parse import Code, location_in, own_nodes, position_of
 from grader.ros.python.walking import walk
 
@@ -54,23 +55,75 @@ _CALLBACKS: Mapping[str, Sequence[_CallbackRow]] = {
 _TIMER_INFO = "TimerInfo"  # which rclpy gives by name to the parameter that has it as annotation
 
 
-class CallbackClass(NamedTuple):
-    """A class with its methods, and the attributes and methods that other code may replace."""
+class _Scope(NamedTuple):
+    """A module, class or function: what binds each name in it, and which nodes are its own."""
 
-    node: ast.ClassDef
-    replaced: Collection[str]
+    bound: Mapping[str, list[ast.AST]]
+    own: Collection[ast.AST]
+
+
+class CallbackFunctions:
+    """The functions that a module gives as callbacks. What binds a name is searched once a scope.
+
+    `classes` are those of the module by their places, `replaced` the attributes and methods that
+    the code of the package may replace.
+    """
+
+    def __init__(
+        self, code: Code, classes: Mapping[Location, ast.ClassDef], replaced: Collection[str]
+    ) -> None:
+        self._code, self._classes, self._replaced = code, classes, replaced
+        self._scopes: dict[ast.AST, _Scope] = {}
+
+    def find(self, part: CodePart, given: ast.expr) -> _Function | None:
+        """Return the function that an expression in a part surely is; None if not known."""
+        if isinstance(given, ast.Lambda):
+            return given
+        name = dotted(given)
+        if name.startswith("self."):
+            owner = self._classes.get(part.of) if part.of is not None else None
+            return self._method(owner, name[5:]) if owner is not None else None
+        if not name or "." in name:
+            return None
+        inside = self._scope(part.node) if part.name else None
+        if inside is not None and _binders(inside, name):
+            return _only_function(inside, name)
+        return _only_function(self._module, name)
+
+    def _method(self, owner: ast.ClassDef, name: str) -> _Function | None:
+        """Return the method that an attribute of self surely is."""
+        if owner.decorator_list or owner.keywords or name in self._replaced:
+            return None
+        return _only_function(self._scope(owner), name)
+
+    def _scope(self, node: ast.AST) -> _Scope:
+        """Return what binds names in a function, also inside of others in it, or in a class."""
+        if node not in self._scopes:
+            own = own_nodes(node)
+            inside = own if isinstance(node, ast.ClassDef) else walk(node)
+            self._scopes[node] = _Scope(_bound_names(inside), frozenset(own))
+        return self._scopes[node]
+
+    @cached_property
+    def _module(self) -> _Scope:
+        """What binds names in the module; a function that binds one of it does so, too."""
+        own = own_nodes(self._code.tree)
+        bound = _bound_names(own)
+        for node in walk(self._code.tree):
+            for name in node.names if isinstance(node, ast.Global) else ():
+                bound.setdefault(name, []).append(node)
+        return _Scope(bound, frozenset(own))
 
 
 def wrong_callbacks(
     code: Code,
     parts: Sequence[CodePart],
-    classes: Mapping[Location | None, CallbackClass],
+    functions: CallbackFunctions,
     is_of_rclpy: Callable[[ast.Call, CodePart], bool],
 ) -> Iterator[CodeFault]:
     """Yield the callbacks that cannot be called with what rclpy gives them.
 
-    `classes` are those of the parts, by their places; `is_of_rclpy` says whether a call surely is
-    one of rclpy's.
+    `is_of_rclpy` says whether a call surely is one of rclpy's.
     """
     if "rclpy" not in code.source.text:
         return
@@ -78,13 +131,13 @@ def wrong_callbacks(
         faults = []
         for call in part.calls:
             if last_name(call.func) in _CALLBACKS and is_of_rclpy(call, part):
-                faults += [(call, fault) for fault in _faults_of(code, part, call, classes)]
+                faults += [(call, fault) for fault in _faults_of(code, part, call, functions)]
         certain = set(certain_nodes(part.node)) if faults else set[ast.AST]()
         yield from (fault for call, fault in faults if call in certain)
 
 
 def _faults_of(
-    code: Code, part: CodePart, call: ast.Call, classes: Mapping[Location | None, CallbackClass]
+    code: Code, part: CodePart, call: ast.Call, functions: CallbackFunctions
 ) -> Iterator[CodeFault]:
     """Yield the callbacks that a call is given and that cannot be called."""
     called = last_name(call.func)
@@ -93,7 +146,7 @@ def _faults_of(
         given = given_argument(call, position, callback.name)
         if given is None:
             continue
-        function = find_function(code, part, given, classes)
+        function = functions.find(part, given)
         if function is None or _is_given_time(called, function, code):
             continue
         is_method = dotted(given).startswith("self.")
@@ -155,64 +208,32 @@ def _is_given_time(called: str, function: _Function, code: Code) -> bool:
     return any(parameter.annotation is not None for parameter in parameters)
 
 
-def find_function(
-    code: Code, part: CodePart, given: ast.expr, classes: Mapping[Location | None, CallbackClass]
-) -> _Function | None:
-    """Return the function that an expression surely is; None if that is not known."""
-    if isinstance(given, ast.Lambda):
-        return given
-    name = dotted(given)
-    if name.startswith("self."):
-        owner = classes.get(part.of)
-        return _find_method(owner, name[5:]) if owner is not None else None
-    if not name or "." in name:
-        return None
-    inside = _functions_named(walk(part.node), name) if part.name else []
-    if inside:
-        return _only_function(inside, own_nodes(part.node))
-    return _find_in_module(code, name)
-
-
-def _find_in_module(code: Code, name: str) -> _Function | None:
-    """Return the function that a name of a module surely is."""
-    body = own_nodes(code.tree)
-    for node in walk(code.tree):
-        if isinstance(node, ast.Global) and name in node.names:
-            return None
-    return _only_function(_functions_named(body, name), body)
-
-
-def _find_method(owner: CallbackClass, name: str) -> _Function | None:
-    """Return the method that an attribute of self surely is."""
-    if owner.node.decorator_list or owner.node.keywords or name in owner.replaced:
-        return None
-    body = own_nodes(owner.node)
-    return _only_function(_functions_named(body, name), body)
-
-
-def _functions_named(nodes: Sequence[ast.AST], name: str) -> list[ast.AST]:
-    """Return what binds a name: functions, and anything else that does."""
-    binding: list[ast.AST] = []
+def _bound_names(nodes: Sequence[ast.AST]) -> dict[str, list[ast.AST]]:
+    """Return what binds each name: functions, and anything else that does; `*` for all names."""
+    bound: dict[str, list[ast.AST]] = {}
     for node in nodes:
         match node:
-            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef() if node.name == name:
-                binding.append(node)
-            case ast.Name(ctx=ast.Store() | ast.Del()) if node.id == name:
-                binding.append(node)
-            case ast.arg() if node.arg == name:
-                binding.append(node)
-            case ast.alias() if (node.asname or node.name.partition(".")[0]) in (name, "*"):
-                binding.append(node)
-            case ast.ExceptHandler() | ast.MatchAs() | ast.MatchStar() if node.name == name:
-                binding.append(node)
-    return binding
+            case ast.Attribute() | ast.Subscript():
+                continue  # which are changed, not bound
+            case ast.alias(name="*"):
+                bound.setdefault("*", []).append(node)
+            case _:
+                for name in bound_by(node):
+                    bound.setdefault(name, []).append(node)
+    return bound
 
 
-def _only_function(binding: Sequence[ast.AST], body: Sequence[ast.AST]) -> _Function | None:
-    """Return what binds a name if it is one function without decorators in a body."""
-    if len(binding) != 1 or binding[0] not in body:
+def _binders(scope: _Scope, name: str) -> list[ast.AST]:
+    """Return what binds a name in a scope."""
+    return [*scope.bound.get(name, ()), *scope.bound.get("*", ())]
+
+
+def _only_function(scope: _Scope, name: str) -> _Function | None:
+    """Return what binds a name if it is one function of the scope without decorators."""
+    binders = _binders(scope, name)
+    if len(binders) != 1 or binders[0] not in scope.own:
         return None
-    [function] = binding
+    [function] = binders
     if not isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef) or function.decorator_list:
         return None
     return function

@@ -29,8 +29,7 @@ from grader.ros.nodes.python.action_faults import (
 )
 from grader.ros.nodes.python.branches import calls_in_branches
 from grader.ros.nodes.python.callback_parameters import (
-    CallbackClass,
-    find_function,
+    CallbackFunctions,
     wrong_callbacks,
 )
 from grader.ros.nodes.python.called_functions import (
@@ -273,9 +272,7 @@ class _Search:
         attributes: _PackageAttributes,
     ) -> None:
         self._module, self._others, self._attributes = module, others, attributes
-        self._callback_classes: dict[Location | None, CallbackClass] = {
-            at: CallbackClass(node, attributes.stored) for at, node in module.classes.items()
-        }
+        self._callbacks = CallbackFunctions(module.code, module.classes, attributes.stored)
         self._code = module.code
         self._functions = {
             (part.of, part.name): part.node
@@ -283,8 +280,6 @@ class _Search:
             if not isinstance(part.node, ast.Module)
         }
         self._registered = [*self._find_registered()]
-        # The functions that are given as callbacks, by the expressions, searched once.
-        self._given: dict[ast.expr, ast.FunctionDef | ast.AsyncFunctionDef | None] = {}
 
     def _find_registered(self) -> Iterator[_Registered]:
         for part in self._module.parts:
@@ -392,8 +387,9 @@ class _Search:
     def wrong_parameters(self) -> Iterator[CodeFault]:
         """Yield callbacks that cannot take what they are called with."""
         if not self._attributes.may_be_more:
-            parts, classes = self._module.parts, self._callback_classes
-            yield from wrong_callbacks(self._code, parts, classes, self._is_of_rclpy)
+            yield from wrong_callbacks(
+                self._code, self._module.parts, self._callbacks, self._is_of_rclpy
+            )
 
     def _is_of_rclpy(self, call: ast.Call, part: CodePart) -> bool:
         """Return whether a call that is given a callback surely is one of rclpy.
@@ -418,13 +414,10 @@ class _Search:
 
     def _callback(self, registered: _Registered) -> ast.FunctionDef | ast.AsyncFunctionDef | None:
         """Return the function that surely is given; None if it may be another one."""
-        given, part = registered.given, registered.part
-        if given not in self._given:
-            function = None
-            if self._is_of_rclpy(registered.call, part):
-                function = find_function(self._code, part, given, self._callback_classes)
-            self._given[given] = None if isinstance(function, ast.Lambda) else function
-        return self._given[given]
+        if not self._is_of_rclpy(registered.call, registered.part):
+            return None
+        function = self._callbacks.find(registered.part, registered.given)
+        return None if isinstance(function, ast.Lambda) else function
 
     def without_response(self) -> Iterator[CodeFault]:
         """Yield callbacks of services and actions that return nothing."""
@@ -1024,9 +1017,7 @@ def _is_plain_test(test: ast.expr) -> bool:
 
 
 def _may_spin(modules: Sequence[ModuleText]) -> bool:
-    """Return whether modules may spin a node, or ask a TransformListener to do so."""
-    if any("spin_thread" in module.code.source.text for module in modules):
-        return True
+    """Return whether functions that modules call may spin a node."""
     names = {*_count_names(modules)}
     for module in modules:
         names.update(name.rpartition(".")[2] for name in module.imports)
