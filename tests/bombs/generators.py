@@ -204,6 +204,38 @@ def modules_that_import(n: int) -> Files:
     return files
 
 
+@_bomb
+def callbacks_that_are_functions(n: int) -> Files:
+    timers = [f"self.create_timer(1.0, f_{word(i)})" for i in range(n)]
+    functions = lines(n, lambda i: f"def f_{word(i)}():\n    pass")
+    files = launched(started(1), programs="'x = my_robot.x:main'")
+    return {**files, "my_robot/x.py": f"{functions}\n{program(timers)}"}
+
+
+@_bomb
+def callbacks_that_are_methods(n: int) -> Files:
+    services = [f"self.create_service(Trigger, 's{i}', self.m_{word(i)})" for i in range(n)]
+    methods = lines(
+        n, lambda i: f"    def m_{word(i)}(self, request, response):\n        return response"
+    )
+    code = program(services).replace("def main():", f"{methods}\ndef main():")
+    files = launched(started(1), programs="'x = my_robot.x:main'")
+    return {**files, "my_robot/x.py": f"from std_srvs.srv import Trigger\n{code}"}
+
+
+@_bomb
+def classes_of_nodes_of_each_other(n: int) -> Files:
+    classes = lines(
+        n,
+        lambda i: (
+            f"class C{i + 1}({f'C{i}' if i else 'N'}):\n    def __init__(self):\n        super().__init__()"
+        ),
+    )
+    code = program(["self.create_timer(1.0, self.destroy_node)"])
+    files = launched(started(1), programs="'x = my_robot.x:main'")
+    return {**files, "my_robot/x.py": f"{code}\n{classes}"}
+
+
 # --- Robots, SRDF, controllers and Gazebo
 # ----------------------------------------------------------------------
 
