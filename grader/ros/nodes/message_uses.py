@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from grader.base.source import Location, Source
 from grader.ros.nodes.node_facts import FieldUse, TypeImport
+from grader.ros.python.bindings import names_bound
 from grader.ros.python.constants import dotted, last_name, offset_of
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
 from grader.ros.python.values import SCALARS, QualifiedName, Scope, Value
@@ -176,16 +177,7 @@ def _types_given(
 
 def _names_inside(part: CodePart) -> set[str]:
     """Return the names that a function, or one in it, binds; none of a module."""
-    names = set[str]()
-    for node in walk(part.node) if part.name else ():
-        match node:
-            case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
-                names.add(name)
-            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
-                names.add(name)
-            case ast.alias(name=full, asname=asname):
-                names.add(asname or full)
-    return names - {part.name}
+    return names_bound(walk(part.node)) - {part.name} if part.name else set()
 
 
 def _count_uses(nodes: Iterable[ast.AST]) -> Counter[str]:

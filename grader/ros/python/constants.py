@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
+from grader.ros.python.bindings import bound_names
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.interpreter import Interpreter
 from grader.ros.python.library import imported_names
@@ -227,28 +228,16 @@ def _bindings(nodes: Sequence[ast.AST]) -> tuple[Counter[str], dict[str, ast.exp
             case ast.AnnAssign(target=target, value=ast.expr() as value):
                 values[dotted(target)] = value
             case _:
-                counts.update(bound_by(part))
+                counts.update(_bound_by(part))
     return counts, values
 
 
-def bound_by(part: ast.AST) -> Sequence[str]:
+def _bound_by(part: ast.AST) -> Sequence[str]:
     """Return the names with dots that one node binds or changes."""
-    names: list[str] = []
     match part:
-        case ast.Name(ctx=ast.Store() | ast.Del()):
-            names = [part.id]
         case ast.Attribute(ctx=ast.Store() | ast.Del()):
-            names = [dotted(part), dotted(part.value)]
+            return [dotted(part), dotted(part.value)]
         case ast.Subscript(ctx=ast.Store() | ast.Del()):
-            names = [dotted(part.value)]
-        case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
-            names = [part.name]
-        case ast.arg(arg=name):
-            names = [name]
-        case ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)):
-            names = [name]
-        case ast.MatchStar(name=str(name)) | ast.MatchMapping(rest=str(name)):
-            names = [name]
-        case ast.alias(name=full, asname=asname):
-            names = [asname or full.partition(".")[0]]
-    return names
+            return [dotted(part.value)]
+        case _:
+            return bound_names(part)

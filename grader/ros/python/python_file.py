@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from grader.base.source import Edit, Edits, Source
+from grader.ros.python.bindings import names_bound
 from grader.ros.python.library import USUAL_NAMES
 from grader.ros.python.parse import Code, SyntaxFault, parse
 from grader.ros.python.walking import walk
@@ -164,16 +165,7 @@ class PythonFile:
     @cached_property
     def bound(self) -> frozenset[str]:
         """The names that the file binds anywhere."""
-        names: set[str] = set()
-        for node in self.nodes:
-            match node:
-                case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
-                    names.add(name)
-                case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
-                    names.add(name)
-                case ast.alias(name=name, asname=other):
-                    names.add(other or name.split(".")[0])
-        return frozenset(names)
+        return frozenset(names_bound(self.nodes))
 
     @cached_property
     def used(self) -> frozenset[str]:

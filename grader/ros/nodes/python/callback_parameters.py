@@ -14,7 +14,8 @@ from grader.base.source import Location
 from grader.base.text import counted
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.nodes.node_facts import CodeFault
-from grader.ros.python.constants import bound_by, dotted, last_name
+from grader.ros.python.bindings import bound_names
+from grader.ros.python.constants import dotted, last_name
 from grader.ros.python.parse import Code, location_in, own_nodes, position_of
 from grader.ros.python.walking import walk
 
@@ -212,14 +213,8 @@ def _bound_names(nodes: Sequence[ast.AST]) -> dict[str, list[ast.AST]]:
     """Return what binds each name: functions, and anything else that does; `*` for all names."""
     bound: dict[str, list[ast.AST]] = {}
     for node in nodes:
-        match node:
-            case ast.Attribute() | ast.Subscript():
-                continue  # which are changed, not bound
-            case ast.alias(name="*"):
-                bound.setdefault("*", []).append(node)
-            case _:
-                for name in bound_by(node):
-                    bound.setdefault(name, []).append(node)
+        for name in bound_names(node):
+            bound.setdefault(name, []).append(node)
     return bound
 
 
