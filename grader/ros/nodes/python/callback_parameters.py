@@ -57,10 +57,13 @@ _TIMER_INFO = "TimerInfo"  # which rclpy gives by name to the parameter that has
 
 
 class _Scope(NamedTuple):
-    """A module, class or function: what binds each name in it, and which nodes are its own."""
+    """A module, class or function: what binds each name in it, and its nodes.
+
+    The nodes of functions and classes in it are not among its nodes.
+    """
 
     bound: Mapping[str, list[ast.AST]]
-    own: Collection[ast.AST]
+    nodes: Collection[ast.AST]
 
 
 class CallbackFunctions:
@@ -100,20 +103,20 @@ class CallbackFunctions:
     def _scope(self, node: ast.AST) -> _Scope:
         """Return what binds names in a function, also inside of others in it, or in a class."""
         if node not in self._scopes:
-            own = own_nodes(node)
-            inside = own if isinstance(node, ast.ClassDef) else walk(node)
-            self._scopes[node] = _Scope(_bound_names(inside), frozenset(own))
+            nodes = own_nodes(node)
+            inside = nodes if isinstance(node, ast.ClassDef) else walk(node)
+            self._scopes[node] = _Scope(_bound_names(inside), frozenset(nodes))
         return self._scopes[node]
 
     @cached_property
     def _module(self) -> _Scope:
         """What binds names in the module; a function that binds one of it does so, too."""
-        own = own_nodes(self._code.tree)
-        bound = _bound_names(own)
+        nodes = own_nodes(self._code.tree)
+        bound = _bound_names(nodes)
         for node in walk(self._code.tree):
             for name in node.names if isinstance(node, ast.Global) else ():
                 bound.setdefault(name, []).append(node)
-        return _Scope(bound, frozenset(own))
+        return _Scope(bound, frozenset(nodes))
 
 
 def wrong_callbacks(
@@ -226,7 +229,7 @@ def _binders(scope: _Scope, name: str) -> list[ast.AST]:
 def _only_function(scope: _Scope, name: str) -> _Function | None:
     """Return what binds a name if it is one function of the scope without decorators."""
     binders = _binders(scope, name)
-    if len(binders) != 1 or binders[0] not in scope.own:
+    if len(binders) != 1 or binders[0] not in scope.nodes:
         return None
     [function] = binders
     if not isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef) or function.decorator_list:
