@@ -95,3 +95,10 @@ def test_every_key_is_on_the_reference() -> None:
     for table in (RUBRIC, PART, CRITERION, DEFAULTS):
         for key in table.keys:
             assert f"\n- `{key}` (" in REFERENCE
+
+
+def test_a_new_output_keeps_what_a_page_leaves_out(tmp_path: Path) -> None:
+    """A line with "..." stays where it still matches: a time of today would fail tomorrow."""
+    page = "```sh\ngrader diff\n```\n\n```\nrun 2 of ...\n1 student\n```\n"
+    written, _ = follow(page, tmp_path, lambda *_: ("run 2 of 13:12\n2 students", 0))
+    assert written == page.replace("1 student", "2 students")

@@ -1,6 +1,6 @@
 """Follow the tutorials in docs/. `python -m tests.tutorial` writes the output of the commands into their pages.
 
-An output on the page stays as it is if it matches, where "..." stands for any text.
+An output on the page stays as it is if it matches, where "..." stands for any text; else each of its lines does.
 """
 
 import re
@@ -63,7 +63,7 @@ def follow(
             is_shown = pieces[index + 1] == "\n" and pieces[index + 2].startswith("```\n")
             shown = pieces[index + 2][4:-4] if is_shown else None
             if shown is not None and not _matches(shown, printed):
-                pieces[index + 2] = f"```\n{printed.rstrip()}\n```\n"
+                pieces[index + 2] = f"```\n{_shortened(printed.rstrip(), shown)}\n```\n"
             steps.append(Step(text, shown, printed, code))
         elif kind == "diff" and name:
             _change(folder / name[1], text)
@@ -90,6 +90,15 @@ def _hunks(diff: str) -> Iterator[list[str]]:
 
 def _matches(shown: str, printed: str) -> bool:
     return re.fullmatch(_pattern(shown.strip(), ".*?"), printed.strip(), re.DOTALL) is not None
+
+
+def _shortened(printed: str, shown: str) -> str:
+    """Return what is printed, with each line of a page that has "..." among words and still matches."""
+    kept = [line for line in shown.splitlines() if "..." in line and line.strip() != "..."]
+    return "\n".join(
+        next((known for known in kept if _matches(known, line)), line)
+        for line in printed.splitlines()
+    )
 
 
 def _pattern(text: str, anything: str) -> str:
