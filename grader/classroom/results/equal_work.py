@@ -10,14 +10,7 @@ from grader.files.reading import sha256_of
 from grader.lab.checks.registry import GRAPH_CHECKS
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.submission import Submission
-from grader.ros.api import (
-    Read,
-    graph_form,
-    launch_files,
-    launch_graph,
-    robot_hash,
-    written_form,
-)
+from grader.ros.api import Read, robot_hash, written_form
 
 # students, or a tenth of the class: what more have in common comes from the handout
 _MAX_SHARING = 4
@@ -52,6 +45,8 @@ def forms_of(
             forms |= {"urdf": sha256_of(urdf.data), "robot": robot_hash(urdf.reading)}
         forms["written"] = written_form(urdf.reading.elements, is_handed_out=is_handed_out)
     if any(criterion.check.name in GRAPH_CHECKS for criterion in rubric.criteria):
+        from grader.ros.api import graph_form, launch_files, launch_graph  # late: few labs ask
+
         launches = launch_files(submission.workspace) if submission.packages else []
         if launches:
             forms["graph"] = graph_form(launch_graph(submission.workspace, launches[0]))

@@ -23,7 +23,7 @@ from grader.ros.package.package import Package
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import Undetermined
 from grader.ros.urdf.reader import Reading, find_xacro, read_robot, read_urdf
-from grader.ros.urdf.urdf_problems import OF_SLIPS, RAW_XACRO
+from grader.ros.urdf.urdf_problems import OF_SLIPS, OF_VALUES, RAW_XACRO
 from grader.ros.urdf.versions import UrdfVersion, newest_version
 from grader.ros.xml.parsing import XmlDocument, read_document
 from grader.ros.xml.xml_problems import DOCTYPE, NOT_WELL_FORMED
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from grader.ros.xacro.xacro_files import SurroundingFiles
 
 _MAX_FOLDERS = 40  # whose launch files are read
+# What may be a slip although it is no problem of a URDF: text, CDATA, xacro, words of SDF.
+_NO_PROBLEM = re.compile(r">\s*+(?!-->)[^\s<]|<!(?!--)|[${]|xacro:|<gazebo")
 _NO_FILES = make_tree("", (), ())
 
 
@@ -117,9 +119,14 @@ class Read(NamedTuple):
     @property
     def slip_choices(self) -> "Iterator[Choice]":
         """The slips that another reading of the files proves, each with all ways to read it."""
+        text = self.data.decode("utf-8", "replace")
+        if OF_VALUES.issuperset(
+            problem.kind for problem in self.problems
+        ) and not _NO_PROBLEM.search(text):
+            return iter(())
         from grader.ros.slips.choices import list_choices  # late: as above
 
-        texts = {self.path: Source(self.path, self.data.decode("utf-8", "replace"))}
+        texts = {self.path: Source(self.path, text)}
         if self.reading.source.is_expanded:
             for source in cast("ExpandedSource", self.reading.source).texts_of_files:
                 texts.setdefault(source.path, source)

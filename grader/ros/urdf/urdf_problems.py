@@ -77,3 +77,8 @@ OF_SLIPS = frozenset(
         UNDEFINED_MATERIAL,
     }
 )
+
+# Those of what is written as a URDF has it, so that no slip is the cause.
+OF_VALUES = frozenset(
+    {SCALED_AXIS, UNPUBLISHED_JOINT, LIMIT_IN_DEGREES, DEGREES, ROOT_INERTIA, COMMENT_TRAP}
+)

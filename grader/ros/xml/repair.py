@@ -7,6 +7,7 @@ format of a URDF: a tag that does not fit closes those that are in its way.
 import re
 from bisect import bisect_right
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Literal, NamedTuple
 
 from grader.base.element_edits import empty_element
@@ -90,6 +91,7 @@ class _Repair(NamedTuple):
     is_lossy: bool  # whether something that the student wrote has no place in the repaired text
 
 
+@lru_cache(maxsize=1)  # who reads a robot again in another way asks for its text again
 def repair(text: str) -> _Repair:
     """Return the changes that repair a text, and the robot that is read after them."""
     conflicts = find_conflicts(text)
