@@ -102,6 +102,12 @@ _MOVEIT = """moveit_simple_controller_manager:
   arm:
     type: FollowJointTrajectory
 """
+_NO_TERMINAL = """[turtle-1] Traceback (most recent call last):
+[turtle-1]   File "/opt/ros/jazzy/lib/teleop_twist_keyboard/teleop_twist_keyboard", line 33, in <module>
+[turtle-1]     main()
+[turtle-1] termios.error: (25, 'Inappropriate ioctl for device')
+"""
+_KEYS = "Node(package='teleop_twist_keyboard', executable='teleop_twist_keyboard'),"
 _WITH_ROBOT = {
     "urdf/arm.urdf.xacro": "<robot name='a'/>",
     "setup.py": _SETUP.replace("[('", "[('share/cell/urdf', ['urdf/arm.urdf.xacro']), ('", 1),
@@ -259,6 +265,12 @@ _TARGETS = "install(TARGETS mover DESTINATION lib/${PROJECT_NAME})"
             _TRACE.replace("PATH", "/home/ann/ws/src/cell"),
             "src/cell/cell/mover.py:2",
             id="traceback of a source",
+        ),
+        pytest.param(
+            _workspace(nodes=_KEYS),
+            _NO_TERMINAL,
+            "src/cell/launch/c.launch.py:8",
+            id="no terminal",
         ),
         pytest.param(
             {**_workspace(), "src/old/cell/package.xml": _workspace()["src/cell/package.xml"]},

@@ -98,6 +98,7 @@ class ProgramRow(NamedTuple):
     ends_unless: tuple[str, ...] | None = None  # the options without which it ends by itself
     valued_options: tuple[str, ...] = ()  # that a value follows; the others are switches
     publishes_joint_states: bool = False  # of all joints
+    reads_keys: bool = False  # from its terminal, without which it stops
     subscriptions: Mapping[str, str] = {}  # topics with their types
     publishers: Mapping[str, str] = {}
     names: tuple[str, ...] = ()  # further topics and services

@@ -225,6 +225,7 @@ class StartedNode(NamedTuple):
     included_by: tuple[
         str, ...
     ] = ()  # the paths below the prefix of the launch files by which its own is included
+    has_prefix: bool = False  # whether another program starts it, such as a terminal
 
     def topic(self, name: str) -> str | None:
         """Return the topic that the node has for a name in its program.

@@ -176,6 +176,7 @@ def _add_names(
         arguments=tuple(None if PART_UNKNOWN in word else word for word in words),
         parameters=parameters,
         included_by=context.included_by,
+        has_prefix=bool(call.kwargs.get("prefix")),
     )
     return _add_remaps(node, rules, [*words, *ros_words], call, context)
 
@@ -292,9 +293,13 @@ def _node_of_command(words: list[str], call: Call) -> Call | None:
     package, program, *arguments = words[2:] if is_run else [_RVIZ, *words]
     if PART_UNKNOWN in package + program:
         return None
-    return Call(
-        call.name, [], {"package": package, "executable": program, "arguments": arguments}, call.at
-    )
+    given = {
+        "package": package,
+        "executable": program,
+        "arguments": arguments,
+        "prefix": call.kwargs.get("prefix"),
+    }
+    return Call(call.name, [], given, call.at)
 
 
 def evaluate_node(call: Call, context: Context) -> None:

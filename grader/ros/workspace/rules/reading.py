@@ -70,6 +70,7 @@ from grader.ros.workspace.rules.simulated_nodes import simulated_node_facts
 from grader.ros.workspace.rules.simulated_topics import simulated_topic_facts
 from grader.ros.workspace.rules.spawners import spawner_facts
 from grader.ros.workspace.rules.srdf import srdf_facts
+from grader.ros.workspace.rules.terminal_programs import terminal_facts
 from grader.ros.workspace.rules.topic_wiring import topic_wiring_facts
 from grader.ros.workspace.rules.unmet_topics import unmet_topic_facts
 from grader.ros.workspace.rules.unread_parameters import unread_parameter_facts
@@ -133,6 +134,7 @@ _READERS = (
     gazebo_hardware_facts,
     listed_plugin_facts,
     simulated_joint_facts,
+    terminal_facts,
     unread_parameter_facts,
     unused_argument_facts,
     body_facts,

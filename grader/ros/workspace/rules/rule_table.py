@@ -641,6 +641,13 @@ SIMULATED_NODE = Rule(
     _OTHER_TIME,
     "The nodes that a launch file starts beside Gazebo use its time.",
 )
+PROGRAM_TERMINAL = Rule(
+    "program-terminal",
+    "wiring",
+    _MAY_WAIT,
+    _MAY_WAIT,
+    "A program that reads keys or lines is started in a terminal.",
+)
 SIMULATED_JOINTS = _companion(
     "simulated-joints",
     sentence="Something publishes the positions of the joints of a robot in Gazebo.",

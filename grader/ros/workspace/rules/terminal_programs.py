@@ -1,0 +1,62 @@
+"""Programs that read keys or lines, which a launch file starts without a terminal.
+
+The standard input of what `ros2 launch` starts is a pipe that nothing writes to.
+"""
+
+import re
+from collections.abc import Iterator
+
+from grader.base.source import Location
+from grader.ros.known.package_rows import program_row
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.workspace.model.code_text import code_alone
+from grader.ros.workspace.model.own_code import CPP_ENDINGS
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Compared, Fact, warning
+from grader.ros.workspace.rules.rule_table import PROGRAM_TERMINAL
+
+# What reads or changes the settings of a terminal, and that it is the one of the standard input.
+_KEYS = re.compile(r"\b(?:tcgetattr|setraw|setcbreak)\s*+\(")
+_STANDARD = re.compile(
+    r"\bstdin\b|\bSTDIN_FILENO\b|\btcgetattr\s*+\(\s*+0\b|\bk?fd_?\s*+[=({]\s*+0\b"
+)
+# What reads keys or lines in Python without naming the standard input.
+_ALSO = re.compile(r"\bcurses\.(?:wrapper|initscr)\b|(?<![\w.])input\s*+\(")
+# Code that looks whether there is a terminal, opens another one, or goes on without one.
+_OTHERWISE = re.compile(r"\bisatty\b|\bopenpty\b|\btermios\.error\b|\bEOFError\b|\bdef input\b")
+
+
+def terminal_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the programs that read keys or lines, and that are started without a terminal.
+
+    Of own programs the file of their only node is read. Nothing is said of one that is started by
+    another program, such as xterm, or that looks whether there is a terminal.
+    """
+    said = set[Location]()
+    for _, node in workspace.launches.launched:
+        if node.when is False or node.has_prefix or node.location in said:
+            continue
+        yield Compared("wiring")
+        if program_row(node.package, node.executable).reads_keys or _reads_keys(workspace, node):
+            said.add(node.location)
+            message = (
+                f"{node.executable} reads keys or lines, and ros2 launch gives it no terminal: "
+                "start it with the prefix xterm -e, or with ros2 run in another terminal"
+            )
+            yield warning(PROGRAM_TERMINAL, message, node.location)
+
+
+def _reads_keys(workspace: Workspace, node: StartedNode) -> bool:
+    """Return whether the file of an own node reads keys or lines."""
+    facts, package = workspace.code.own_node(node), workspace.package_of(node)
+    if facts is None or package is None:
+        return False
+    path = facts.location.path
+    sources = workspace.texts.sources_of(package, (".py", *CPP_ENDINGS))
+    text = next((source.text for source in sources if source.path == path), "")
+    code = code_alone(text, path)
+    if _OTHERWISE.search(code):
+        return False
+    if path.endswith(".py") and _ALSO.search(code):
+        return True
+    return _KEYS.search(code) is not None and _STANDARD.search(code) is not None
