@@ -31,6 +31,7 @@ class Controller(NamedTuple):
     type: YamlNode
     location: Location
     has_file: bool  # of its own for its parameters
+    is_own: bool  # whether its own section has the type, which only its spawner can read
 
     @property
     def is_broadcaster(self) -> bool:
@@ -78,7 +79,7 @@ def defined_controllers(workspace: Workspace) -> tuple[Controller, ...]:
                 at = kind.location
                 if around is not None and controller in around.key_marks:
                     at = around.key_location(controller)
-                controllers.append(Controller(controller, kind, at, has_file))
+                controllers.append(Controller(controller, kind, at, has_file, around is None))
     return tuple(controllers)
 
 

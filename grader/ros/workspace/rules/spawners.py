@@ -178,9 +178,9 @@ def _is_manager(node: StartedNode) -> bool:
 def _without_type(
     workspace: Workspace, package: Package, launch: Launch, controllers: Sequence[Controller]
 ) -> Iterator[Fact]:
-    """Yield the controllers whose types are in files that nothing gets.
+    """Yield the controllers whose types are in files or sections that nothing reads.
 
-    The controller manager and their spawner do not get these files.
+    The controller manager reads its own section of its files, and a spawner that of its controller.
     """
     manager, lacks_type = _controllers_without_type(workspace, package, launch)
     if manager is None:
@@ -189,7 +189,14 @@ def _without_type(
         workspace.installed.source_of(each.path) for each in manager.parameters or () if each.path
     ]
     lacking = [controller for controller in controllers if controller.name in lacks_type]
+    own = [each for each in lacking if each.is_own and each.location.path in files]
     lacking = [controller for controller in lacking if controller.location.path not in files]
+    for controller in own if not lacking else ():
+        text = (
+            f"only a spawner with --param-file reads the type of {quoted(controller.name)} here: "
+            f"give its spawner this file, or write the type below {MANAGER}"
+        )
+        yield Mismatch(MANAGER_PARAMETERS, text, controller.location, manager.location)
     if lacking:
         at = lacking[0].location
         text = (
