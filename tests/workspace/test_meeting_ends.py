@@ -11,7 +11,7 @@ _SCANNER = (
 )
 _TELEOP = (
     "Node(package='teleop_twist_keyboard', executable='teleop_twist_keyboard', "
-    "remappings=[('cmd_vel', 'drive')], parameters=[{'stamped': VALUE}]),"
+    "remappings=[('cmd_vel', 'drive')], parameters=[{'stamped': VALUE}], prefix='xterm -e'),"
 )
 _BRIDGE = "Node(package='ros_gz_bridge', executable='parameter_bridge', arguments=['ROW']),"
 _FILTER = (

@@ -22,7 +22,7 @@ _STATIC = _TF.format("'--frame-id', '{}', '--child-frame-id', '{}'")
 _EKF = "Node(package='robot_localization', executable='ekf_node', name='ekf', parameters=[{{{}}}]),"
 _TELEOP = (
     "Node(package='teleop_twist_keyboard', executable='teleop_twist_keyboard', "
-    "remappings=[('cmd_vel', '/wheels/cmd_vel')], parameters=[{'stamped': STAMPED}]),"
+    "remappings=[('cmd_vel', '/wheels/cmd_vel')], parameters=[{'stamped': STAMPED}], prefix='xterm -e'),"
 )
 _CLOCK = (
     "Node(package='ros_gz_bridge', executable='parameter_bridge', "
