@@ -161,7 +161,7 @@ WEIGHTS = {
     "ros.cpp": 13_400,  # errors of the grammar leave open one statement only
     "ros.installation": 33_450,  # CMake's targets and expressions, and the dependencies of package.xml
     "ros.interfaces": 4_400,  # types have the releases that they exist in
-    "ros.known": 10_400,  # rows of what programs open, by release
+    "ros.known": 10_450,  # whether a program reads keys
     "ros.launch": 47_450,  # the words of Lyrical, components, and what follows an error
     "ros.log": 4_050,  # names of findings beside their lines, and what keeps a started robot from being read
     "ros.mesh": 4_300,
@@ -170,7 +170,7 @@ WEIGHTS = {
     "ros.python": 30_000,  # branches, and constants of classes
     "ros.slips": 7_800,  # slips are proven by reading the robot again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads
-    "ros.workspace": 165_550,  # a function for each rule, the graph, and the names that editors complete and rename
+    "ros.workspace": 165_750,  # programs that read keys, types that no spawner reads
     "ros.xacro": 28_600,  # xacro:attribute, and letters outside of ASCII
     "ros.xml": 13_400,  # attributes of broken tags and of newer versions of URDF
     "": 400,

@@ -4,12 +4,10 @@ What is written can stand for one thing only if no other way to read it gives an
 """
 
 from collections.abc import Iterator, Sequence
-from functools import cached_property
 
 from grader.base.slips import Slip
 from grader.lab.submission.edited import edited_files, with_urdf
 from grader.lab.submission.submission import Submission
-from grader.ros.package.robot_comparison import RobotState
 from grader.ros.package.robot_file import Read
 
 _MAX_TRIALS = 60  # times that the robot is read again
@@ -20,8 +18,10 @@ def proven_slips(submission: Submission) -> Iterator[Slip]:
     urdf = submission.urdf
     if not isinstance(urdf, Read):
         return
-    trials = _Trials(submission, urdf)
+    trials: _Trials | None = None
     for choice in urdf.slip_choices:
+        if trials is None:
+            trials = _Trials(submission, urdf)
         slip = trials.choose(choice)
         if slip is not None:
             yield slip
@@ -34,13 +34,8 @@ class _Trials:
 
     def __init__(self, submission: Submission, urdf: Read) -> None:
         self._submission = submission
-        self._urdf = urdf
+        self._before = urdf.state
         self._left = _MAX_TRIALS
-
-    @cached_property
-    def _before(self) -> RobotState:
-        """What the robot is as it is read without a slip."""
-        return self._urdf.state
 
     @property
     def is_spent(self) -> bool:

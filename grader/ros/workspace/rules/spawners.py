@@ -189,9 +189,9 @@ def _without_type(
         workspace.installed.source_of(each.path) for each in manager.parameters or () if each.path
     ]
     lacking = [controller for controller in controllers if controller.name in lacks_type]
-    own = [each for each in lacking if each.is_own and each.location.path in files]
+    unread = [each for each in lacking if each.is_own and each.location.path in files]
     lacking = [controller for controller in lacking if controller.location.path not in files]
-    for controller in own if not lacking else ():
+    for controller in unread if not lacking else ():
         text = (
             f"only a spawner with --param-file reads the type of {quoted(controller.name)} here: "
             f"give its spawner this file, or write the type below {MANAGER}"
