@@ -177,3 +177,68 @@ def test_the_top_package_of_an_entry_point_is_one_that_is_installed(
     [package] = read_packages(tree, "urdf/hub.urdf")
     found = entry_fault(package, "talk")
     assert (found.message if found is not None else None) == fault
+
+
+@pytest.mark.parametrize(
+    ("packages", "files", "fault"),
+    [
+        ("find_packages()", {}, "setup.py installs no package hub, a folder without __init__.py"),
+        ("['tools']", {"hub/__init__.py": ""}, "setup.py installs no package hub"),
+        ("['hub']", {}, None),
+        ("['hub']", {"hub/__init__.py": ""}, None),
+        ("[], package_data={'': ['*.py']}", {}, None),
+    ],
+)
+def test_the_package_of_an_entry_point_is_installed(
+    packages: str, files: dict[str, str], fault: str | None
+) -> None:
+    """What setup.py does not name and find_packages() does not find is not installed."""
+    setup = f"from setuptools import find_packages, setup\nsetup(name='hub', packages={packages},"
+    texts = {
+        "package.xml": "<package format='3'><name>hub</name></package>",
+        "setup.py": f"{setup}\n    entry_points={{'console_scripts': ['talk = hub.talker:main']}})\n",
+        "hub/talker.py": "def main(): pass",
+        "resource/hub": "",
+        "tools/__init__.py": "",
+        **files,
+    }
+    data = {f"src/hub/{path}": text.encode() for path, text in texts.items()}
+    [package] = read_packages(overlaid(make_tree("work", (), ()), data), "urdf/hub.urdf")
+    found = entry_fault(package, "talk")
+    assert (found.message if found is not None else None) == fault
+
+
+@pytest.mark.parametrize(
+    ("entry", "installed", "found"),
+    [
+        (
+            "talker:main",
+            "packages=['hub']",
+            "there is no module talker; did you mean 'hub.talker'?",
+        ),
+        ("talker:run", "packages=['hub']", None),
+        ("talker:main", "packages=['hub'], py_modules=['talker']", None),
+        ("talker:main", "packages=['hub', 'talker']", None),
+        ("hub.talker", "packages=['hub']", "hub.talker is a module; write hub.talker:main"),
+        ("hub.empty", "packages=['hub']", None),
+    ],
+)
+def test_an_entry_point_names_a_function_of_a_module_in_a_package(
+    entry: str, installed: str, found: str | None
+) -> None:
+    """Without the package, no module is found; without the function, a module is called."""
+    texts = {
+        "package.xml": "<package format='3'><name>hub</name></package>",
+        "setup.py": f"from setuptools import setup\nsetup(name='hub', {installed},\n"
+        f"    entry_points={{'console_scripts': ['talk = {entry}']}})\n",
+        "hub/__init__.py": "",
+        "hub/talker.py": "def main(): pass",
+        "hub/empty.py": "print('works')",
+        "resource/hub": "",
+    }
+    if "'hub', 'talker'" in installed:
+        texts["talker/__init__.py"] = "def main(): pass"
+    data = {f"src/hub/{path}": text.encode() for path, text in texts.items()}
+    [package] = read_packages(overlaid(make_tree("work", (), ()), data), "urdf/hub.urdf")
+    fault = entry_fault(package, "talk")
+    assert (fault.message if fault is not None else None) == found

@@ -5,6 +5,7 @@ They are the programs of a Python package.
 
 import ast
 import re
+import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
@@ -35,6 +36,11 @@ _ENTRY = re.compile(
 
 
 _WRITTEN_NAME = re.compile(r"""(?<=['"])[ \t]*([^'"=\s]+)[ \t]*=""")
+
+
+_MAIN = "main"
+# Arguments of setup() by which it installs modules that packages does not name.
+_OTHER_MODULES = ("package_dir", "py_modules", "package_data")
 
 
 class _EntryPoint(NamedTuple):
@@ -131,17 +137,23 @@ def entry_fault(package: Package, name: str) -> _EntryFault | None:
     [entry] = named
     path = module_path(package, entry.module)
     if path is not None:
-        return _missing_function(package, entry, path)
+        return _missing_function(package, entry, path) or _not_installed(package, entry, path)
     if _lacks_module(package, entry.module):
         return _missing_module(package, entry)
-    return _misspelt_package(package, entry)
+    return _without_package(package, entry) or _misspelt_package(package, entry)
 
 
 def _missing_function(package: Package, entry: _EntryPoint, path: str) -> _EntryFault | None:
     """Return that a module lacks the function of an entry point; None if it may have it."""
     code, names = _names_of_module(package, path)
-    if not entry.function or names is None or entry.function in names:
+    if names is None or entry.function in names:
         return None
+    if not entry.function:
+        if _MAIN not in names:
+            return None  # importing it may do the work
+        message = f"{entry.module} is a module; write {entry.module}:{_MAIN}"
+        meant = entry._replace(function=_MAIN)
+        return _EntryFault(message, entry.location, entry.module, None, meant)
     known: list[str] = []
     functions: list[str] = []
     for node in code.tree.body if code else ():
@@ -152,6 +164,20 @@ def _missing_function(package: Package, entry: _EntryPoint, path: str) -> _Entry
     only = functions[0] if len(functions) == 1 else ""
     fault = _fault(entry, f"{path} has no {entry.function!r}", entry.function, known, only)
     return fault._replace(entry=entry._replace(function=fault.meant or entry.function))
+
+
+def _not_installed(package: Package, entry: _EntryPoint, path: str) -> _EntryFault | None:
+    """Return that setup.py does not install the package of Python with an entry point's module."""
+    setup, home = package.installation, path.rpartition("/")[0].replace("/", ".")
+    if setup is None or setup.unread or package.is_cmake or home in ("", *setup.packages):
+        return None
+    text = setup.source.text
+    if "packages" not in text or any(word in text for word in _OTHER_MODULES):
+        return None
+    message = f"setup.py installs no package {home}"
+    if f"{home.replace('.', '/')}/__init__.py" not in package.tree.files:
+        message += ", a folder without __init__.py"
+    return _EntryFault(message, entry.location, home, None, entry)
 
 
 @lru_cache(maxsize=4)
@@ -220,6 +246,28 @@ def modules_not_installed(package: Package) -> Iterator[_MissingModule]:
                 yield _MissingModule(module, needed, at)
 
 
+def modules_beside(package: Package) -> Iterator[_MissingModule]:
+    """Yield the modules that an entry point imports as if its own folder were searched.
+
+    An installed program does not find them there. Other packages may have a module of such a name.
+    """
+    setup = package.installation
+    for path in dict.fromkeys(module_path(package, each.module) for each in entry_points(package)):
+        code = read_module(package, path) if path is not None else None
+        folder = (path or "").rpartition("/")[0]
+        if code is None or not folder or setup is None or package.is_cmake or setup.unread:
+            continue
+        for module, statement in _imported_modules(code, ""):
+            top = module.partition(".")[0]
+            is_beside = f"{folder}/{top}.py" in package.tree.files
+            is_other = top in (*setup.packages, *sys.stdlib_module_names)
+            is_other = is_other or package.find(top) is not None or package.depends_on(top)
+            is_other = is_other or f"{top}.py" in package.tree.files
+            if is_beside and not is_other and not getattr(statement, "level", 0):
+                at = location_in(code.source, position_of(statement))
+                yield _MissingModule(top, folder.replace("/", "."), at)
+
+
 def _imported_modules(code: Code, folder: str) -> Iterator[tuple[str, ast.stmt]]:
     """Yield the modules that the statements of a file import, without those in other statements."""
     for statement in code.tree.body:
@@ -272,6 +320,25 @@ def _are_names_certain(package: Package, stem: str) -> bool:
             if code is None or _certain_names(code) is None:
                 return False
     return True
+
+
+def _without_package(package: Package, entry: _EntryPoint) -> _EntryFault | None:
+    """Return that an entry point names a module of a package of Python without this package."""
+    setup, module = package.installation, entry.module
+    if setup is None or "." in module or package.find(module) is not None:
+        return None
+    if module in setup.packages or package.depends_on(module) or module in sys.stdlib_module_names:
+        return None
+    for top in setup.packages if "py_modules" not in setup.source.text else ():
+        path = f"{top.replace('.', '/')}/{module}.py"
+        if path in package.tree.files and f"{module}.py" not in package.tree.files:
+            fault = _missing_function(package, entry, path)
+            if fault is None and entry.function:
+                meant = f"{top}.{module}"
+                message = f"there is no module {module}; did you mean {meant!r}?"
+                named = entry._replace(module=meant)
+                return _EntryFault(message, entry.location, module, meant, named, is_sure=True)
+    return None
 
 
 def _misspelt_package(package: Package, entry: _EntryPoint) -> _EntryFault | None:

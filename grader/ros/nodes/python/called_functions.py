@@ -74,19 +74,19 @@ class CalledFunctions:
         call: ast.Call,
         owner: ast.ClassDef | None,
         filled: Mapping[str, str],
-        is_node_class: Callable[[ast.expr], bool] = lambda _: False,
+        known_kind: Callable[[ast.expr], ArgumentKind | None] = lambda _: None,
     ) -> WrongCall | None:
         """Return what is wrong with the arguments of a call in a method of a node's class.
 
-        `filled` is what is given to parameters where it is missing, `is_node_class` says whether an
-        expression surely is a class of nodes.
+        `filled` is what is given to parameters where it is missing, `known_kind` says what an
+        expression is that the class does not tell.
         """
         called = self._called_function(call, owner)
         if called is None:
             return None
 
         def kind_of(argument: ast.expr) -> ArgumentKind | None:
-            return "node class" if is_node_class(argument) else self._kind_of(owner, argument)
+            return known_kind(argument) or self._kind_of(owner, argument)
 
         written = Written(call, self._code.source, self._span, kind_of, filled)
         return wrong_call(written, called, self._releases)

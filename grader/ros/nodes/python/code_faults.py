@@ -6,10 +6,11 @@ create_subscription(), create_service() or ActionServer.
 """
 
 import ast
+import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from grader.base.names import closest, near
 from grader.base.problems import NO_FIXES, Fix, Fixes
@@ -38,7 +39,9 @@ from grader.ros.nodes.python.called_functions import (
     names_bound_by,
 )
 from grader.ros.nodes.python.log_calls import wrong_log_calls
+from grader.ros.nodes.python.message_imports import wrong_imports
 from grader.ros.nodes.python.node_constructors import early_uses
+from grader.ros.nodes.python.parameter_values import parameters_as_values
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
 from grader.ros.python.constants import binds_unseen, constant_in, dotted, last_name
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
@@ -64,6 +67,7 @@ _CERTAIN = frozenset(
 )
 # Names that newer versions of Python define, so that each version finds the same.
 _LATER_BUILTINS = ("PythonFinalizationError", "EncodingWarning", "WindowsError")
+_INTERFACE = re.compile(r"\w+\.(?:msg|srv|action)\.[A-Z]\w*+")
 _SPINNING = "rclpy.spin_until_future_complete"
 # Names of groups and executors with which a callback may wait for another one.
 _CONCURRENT = ("MultiThreadedExecutor", "ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup")
@@ -159,6 +163,7 @@ def code_faults(
     """
     search = _Search(module, others, attributes)
     yield from _undefined_names(module.code)
+    yield from wrong_imports(module.code)
     yield from search.undefined_attributes()
     yield from search.called_callbacks()
     yield from search.wrong_parameters()
@@ -168,6 +173,7 @@ def code_faults(
     yield from _early_uses(module, attributes)
     yield from _wrong_calls(module, others, releases or RELEASES)
     yield from wrong_log_calls(module.code, module.parts)
+    yield from parameters_as_values(module.code, module.parts)
     yield from search.of_actions()
 
 
@@ -192,9 +198,9 @@ def _wrong_calls(
     count = 0
     for part in module.parts:
         owner = module.nodes.get(part.of) if part.of is not None else None
-        is_node_class = partial(_is_one_of, classes, part)
+        kind_in_part = partial(_kind_in_part, classes, part, _other_names(part.node))
         wrong_calls = {
-            call: functions.wrong_call(call, owner, {}, is_node_class) for call in part.calls
+            call: functions.wrong_call(call, owner, {}, kind_in_part) for call in part.calls
         }
         reactions = {call: wrong.reaction for call, wrong in wrong_calls.items() if wrong}
         certain = set(certain_nodes(part.node)) if reactions else set[ast.AST]()
@@ -206,11 +212,36 @@ def _wrong_calls(
                 yield CodeFault("wrong call", reactions[call], at)
 
 
-def _is_one_of(classes: Collection[str], part: CodePart, node: ast.expr) -> bool:
-    """Return whether an expression in a part of a module surely is one of some classes."""
-    first, dot, rest = dotted(node).partition(".")
+def _other_names(function: ast.AST) -> Mapping[str, ast.expr]:
+    """Return the variables that a function binds once, to what has a name already."""
+    counts, values = Counter[str](), dict[str, ast.expr]()
+    for node in walk(function):
+        match node:
+            case ast.Assign(
+                targets=[ast.Name(id=name)], value=ast.Name() | ast.Attribute() as value
+            ):
+                values[name] = value
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+                counts[name] += 1
+    return {name: value for name, value in values.items() if counts[name] == 1}
+
+
+def _kind_in_part(
+    classes: Collection[str], part: CodePart, others: Mapping[str, ast.expr], node: ast.expr
+) -> Literal["node class", "type"] | None:
+    """Return whether an expression in a part of a module surely is a class.
+
+    This is one of the given classes of nodes, or a type of messages. `others` are other names.
+    """
+    named = others.get(node.id, node) if isinstance(node, ast.Name) else node
+    first, dot, rest = dotted(named).partition(".")
     value = constant_in(part.scope, first)
-    return isinstance(value, QualifiedName) and f"{value.name}{dot}{rest}" in classes
+    if not isinstance(value, QualifiedName):
+        return None
+    name = f"{value.name}{dot}{rest}"
+    if name in classes:
+        return "node class"
+    return "type" if _INTERFACE.fullmatch(name) else None
 
 
 def _undefined_names(code: Code) -> Iterator[CodeFault]:
@@ -464,21 +495,25 @@ class _Search:
         """
         if self._is_concurrent():
             return
-        clients = {
+        clients, rates = self._made_by("create_client"), self._made_by("create_rate")
+        for function in self._reached():
+            for call in _calls_in(function):
+                yield from self._waiting(call, function.name, clients, rates)
+            yield from self._sleeping(function)
+            yield from self._loops(function)
+
+    def _made_by(self, method: str) -> set[str]:
+        """Return the variables and attributes that hold what a method of a node makes."""
+        return {
             dotted(node.targets[0])
             for part in self._module.parts
             if part.of is not None
             for node in walk(part.node)
             if isinstance(node, ast.Assign)
             and isinstance(node.value, ast.Call)
-            and dotted(node.value.func) == "self.create_client"
+            and dotted(node.value.func) == f"self.{method}"
             and self._is_of_rclpy(node.value, part)
         }
-        for function in self._reached():
-            for call in _calls_in(function):
-                yield from self._waiting(call, function.name, clients)
-            yield from self._sleeping(function)
-            yield from self._loops(function)
 
     def _loops(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[CodeFault]:
         """Yield the loops of a callback that do nothing until another callback has run."""
@@ -548,7 +583,9 @@ class _Search:
         )
         yield CodeFault("sleeps in a callback", message, at, is_certain=False)
 
-    def _waiting(self, call: ast.Call, name: str, clients: Collection[str]) -> Iterator[CodeFault]:
+    def _waiting(
+        self, call: ast.Call, name: str, clients: Collection[str], rates: Collection[str]
+    ) -> Iterator[CodeFault]:
         called = dotted(call.func)
         owner, _, method = called.rpartition(".")
         if any(keyword.arg == "timeout_sec" for keyword in call.keywords) or len(call.args) > 2:
@@ -557,6 +594,12 @@ class _Search:
             message = (
                 f"{called}() in the callback {name}() waits for ever: the answer is only read "
                 "when the callback has ended; use call_async()"
+            )
+            yield CodeFault("waits in a callback", message, self._at(call))
+        elif method == "sleep" and owner in rates:
+            message = (
+                f"{called}() in the callback {name}() waits for ever: the timer of a rate only "
+                "runs when the callback has ended"
             )
             yield CodeFault("waits in a callback", message, self._at(call))
         elif called == _SPINNING and [*map(dotted, call.args[:1])] == ["self"]:

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from grader.ros.nodes.message_uses import CodePart, certain_nodes
 from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.python.constants import last_name
 from grader.ros.python.parse import Code, location_in, position_of
 
 # rclpy/rclpy/impl/rcutils_logger.py, branches humble and jazzy.
@@ -17,7 +18,7 @@ _OPTIONS = frozenset(
 def wrong_log_calls(code: Code, parts: Sequence[CodePart]) -> Iterator[CodeFault]:
     """Yield calls of get_logger() with several texts, or with options of Python's own loggers.
 
-    They raise a TypeError.
+    They raise a TypeError. Without its parentheses, get_logger has no such method.
     """
     if "rclpy" not in code.source.text:
         return
@@ -31,15 +32,21 @@ def wrong_log_calls(code: Code, parts: Sequence[CodePart]) -> Iterator[CodeFault
 
 
 def _reason(call: ast.Call) -> str:
-    """Return why rclpy refuses a call of a logger; empty for any other call."""
-    match call.func:
-        case ast.Attribute(attr=level, value=ast.Call(func=ast.Attribute(attr="get_logger"))):
-            if level not in _LEVELS:
-                return ""
-        case _:
-            return ""
+    """Return why a call of a logger fails; empty for any other call."""
+    if not isinstance(call.func, ast.Attribute) or call.func.attr not in _LEVELS:
+        return ""
+    level, logger = call.func.attr, call.func.value
+    if last_name(logger.func if isinstance(logger, ast.Call) else logger) != "get_logger":
+        return ""
+    if not isinstance(logger, ast.Call):
+        return f"get_logger is a method, which has no {level}: write get_logger().{level}()"
     if any(isinstance(argument, ast.Starred) for argument in call.args):
         return ""
+    return _wrong_arguments(call, level)
+
+
+def _wrong_arguments(call: ast.Call, level: str) -> str:
+    """Return why a method of a logger does not take its arguments; empty where it does."""
     if len(call.args) > 1:
         return (
             f"{level}() of a logger of rclpy takes one text, and no values for it: Python raises a "

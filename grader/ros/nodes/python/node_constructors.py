@@ -1,4 +1,4 @@
-"""Constructors of nodes that use the node before its base class is initialised."""
+"""Constructors of nodes that use the node before its base class is initialised, or without that."""
 
 import ast
 from collections.abc import Collection, Iterator
@@ -44,9 +44,10 @@ def early_uses(code: Code, owner: ast.ClassDef, replaced: Collection[str]) -> It
     for statement in _statements_before(constructor):
         called = _first_need(statement, owner, known)
         if called is not None:
+            when = "called later" if _initialises(constructor) else "not called"
             message = (
-                f"{dotted(called.func)}() needs what super().__init__() makes, which is called "
-                "later: Python raises an AttributeError; call super().__init__() first"
+                f"{dotted(called.func)}() needs what super().__init__() makes, which is {when}: "
+                "Python raises an AttributeError; call super().__init__() first"
             )
             yield CodeFault(
                 "used too early", message, location_in(code.source, position_of(called))
@@ -55,11 +56,11 @@ def early_uses(code: Code, owner: ast.ClassDef, replaced: Collection[str]) -> It
 
 
 def _statements_before(constructor: ast.FunctionDef | ast.AsyncFunctionDef) -> list[ast.stmt]:
-    """Return the statements before that with super().__init__(); none where there is none."""
+    """Return the statements before that with super().__init__(); all where there is none."""
     for position, statement in enumerate(constructor.body):
         if _initialises(statement):
             return constructor.body[:position]
-    return []
+    return constructor.body
 
 
 def _initialises(node: ast.AST) -> bool:

@@ -296,7 +296,8 @@ def _refused(written: Written, shown: str, signature: _Signature) -> WrongCall |
         if kind in kinds and kind is not None:
             text = cut(written.source.text[slice(*written.span_of(argument))], _MAX_SHOWN)
             reaction = f"{shown} gets {_KIND_WORDS[kind]}, {text}, in place of {expected}"
-            if kind in ("type", "node class") and name in _INSTANCES:
+            is_named = text.rpartition(".")[2][:1].isupper()  # no variable
+            if kind in ("type", "node class") and name in _INSTANCES and is_named:
                 section = _SECTIONS.get(name, "")
                 made = text if not section or text.endswith(f".{section}") else f"{text}.{section}"
                 reaction = f"{reaction}; write {made}()"

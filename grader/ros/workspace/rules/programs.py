@@ -18,6 +18,7 @@ from grader.ros.package.entry_points import (
     entry_fault,
     entry_points,
     module_path,
+    modules_beside,
     modules_not_installed,
     read_module,
 )
@@ -120,6 +121,12 @@ def _modules_not_installed(package: Package) -> Iterator[Mismatch]:
         )
         place = Location(package.path(SETUP), 1, 1)
         yield Mismatch(MODULE_INSTALLED, message, missing.location, place, word=missing.module)
+    for beside in modules_beside(package):
+        message = (
+            f"there is no module {beside.module} after a build, but {beside.package}."
+            f"{beside.module}, so that this import fails: import it from {beside.package}"
+        )
+        yield Mismatch(MODULE_INSTALLED, message, beside.location, word=beside.module)
 
 
 def _other_modules(package: Package) -> Iterator[Mismatch]:
