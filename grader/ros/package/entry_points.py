@@ -149,11 +149,7 @@ def _missing_function(package: Package, entry: _EntryPoint, path: str) -> _Entry
     if names is None or entry.function in names:
         return None
     if not entry.function:
-        if _MAIN not in names:
-            return None  # importing it may do the work
-        message = f"{entry.module} is a module; write {entry.module}:{_MAIN}"
-        meant = entry._replace(function=_MAIN)
-        return _EntryFault(message, entry.location, entry.module, None, meant)
+        return _module_alone(entry, names)
     known: list[str] = []
     functions: list[str] = []
     for node in code.tree.body if code else ():
@@ -164,6 +160,15 @@ def _missing_function(package: Package, entry: _EntryPoint, path: str) -> _Entry
     only = functions[0] if len(functions) == 1 else ""
     fault = _fault(entry, f"{path} has no {entry.function!r}", entry.function, known, only)
     return fault._replace(entry=entry._replace(function=fault.meant or entry.function))
+
+
+def _module_alone(entry: _EntryPoint, names: Collection[str]) -> _EntryFault | None:
+    """Return that an entry point names no function; None if its module may do the work."""
+    if _MAIN not in names:
+        return None
+    message = f"{entry.module} is a module; write {entry.module}:{_MAIN}"
+    meant = entry._replace(function=_MAIN)
+    return _EntryFault(message, entry.location, entry.module, None, meant)
 
 
 def _not_installed(package: Package, entry: _EntryPoint, path: str) -> _EntryFault | None:
@@ -234,10 +239,7 @@ def modules_not_installed(package: Package) -> Iterator[_MissingModule]:
     setup = package.installation
     if setup is None or package.is_cmake or setup.unread or not setup.packages:
         return
-    for path in dict.fromkeys(module_path(package, each.module) for each in entry_points(package)):
-        code = read_module(package, path) if path is not None else None
-        if path is None or code is None:
-            continue
+    for path, code in _modules_of_entries(package):
         for module, statement in _imported_modules(code, path.rpartition("/")[0]):
             is_own = any(module.startswith(f"{name}.") for name in setup.packages)
             needed = _package_of_module(package, module) if is_own else None
@@ -246,26 +248,40 @@ def modules_not_installed(package: Package) -> Iterator[_MissingModule]:
                 yield _MissingModule(module, needed, at)
 
 
+def _modules_of_entries(package: Package) -> Iterator[tuple[str, Code]]:
+    """Yield the modules that entry points name, each with its path."""
+    for path in dict.fromkeys(module_path(package, each.module) for each in entry_points(package)):
+        code = read_module(package, path) if path is not None else None
+        if path is not None and code is not None:
+            yield path, code
+
+
 def modules_beside(package: Package) -> Iterator[_MissingModule]:
     """Yield the modules that an entry point imports as if its own folder were searched.
 
     An installed program does not find them there. Other packages may have a module of such a name.
     """
-    setup = package.installation
-    for path in dict.fromkeys(module_path(package, each.module) for each in entry_points(package)):
-        code = read_module(package, path) if path is not None else None
-        folder = (path or "").rpartition("/")[0]
-        if code is None or not folder or setup is None or package.is_cmake or setup.unread:
-            continue
-        for module, statement in _imported_modules(code, ""):
+    if package.installation is None or package.is_cmake or package.installation.unread:
+        return
+    for path, code in _modules_of_entries(package):
+        folder = path.rpartition("/")[0]
+        for module, statement in _imported_modules(code, "") if folder else ():
             top = module.partition(".")[0]
+            is_absolute = not getattr(statement, "level", 0)
             is_beside = f"{folder}/{top}.py" in package.tree.files
-            is_other = top in (*setup.packages, *sys.stdlib_module_names)
-            is_other = is_other or package.find(top) is not None or package.depends_on(top)
-            is_other = is_other or f"{top}.py" in package.tree.files
-            if is_beside and not is_other and not getattr(statement, "level", 0):
+            if is_absolute and is_beside and not _may_be_elsewhere(package, top):
                 at = location_in(code.source, position_of(statement))
                 yield _MissingModule(top, folder.replace("/", "."), at)
+
+
+def _may_be_elsewhere(package: Package, module: str) -> bool:
+    """Return whether something installs a module of this name that is in no package of Python."""
+    setup = package.installation
+    if setup is None or "py_modules" in setup.source.text or module in sys.stdlib_module_names:
+        return True
+    if module in setup.packages or f"{module}.py" in package.tree.files:
+        return True
+    return package.find(module) is not None or package.depends_on(module)
 
 
 def _imported_modules(code: Code, folder: str) -> Iterator[tuple[str, ast.stmt]]:
@@ -325,19 +341,15 @@ def _are_names_certain(package: Package, stem: str) -> bool:
 def _without_package(package: Package, entry: _EntryPoint) -> _EntryFault | None:
     """Return that an entry point names a module of a package of Python without this package."""
     setup, module = package.installation, entry.module
-    if setup is None or "." in module or package.find(module) is not None:
+    if setup is None or "." in module or _may_be_elsewhere(package, module):
         return None
-    if module in setup.packages or package.depends_on(module) or module in sys.stdlib_module_names:
-        return None
-    for top in setup.packages if "py_modules" not in setup.source.text else ():
+    for top in setup.packages:
         path = f"{top.replace('.', '/')}/{module}.py"
-        if path in package.tree.files and f"{module}.py" not in package.tree.files:
-            fault = _missing_function(package, entry, path)
-            if fault is None and entry.function:
-                meant = f"{top}.{module}"
-                message = f"there is no module {module}; did you mean {meant!r}?"
-                named = entry._replace(module=meant)
-                return _EntryFault(message, entry.location, module, meant, named, is_sure=True)
+        if path in package.tree.files and _missing_function(package, entry, path) is None:
+            meant = f"{top}.{module}"
+            message = f"there is no module {module}; did you mean {meant!r}?"
+            named = entry._replace(module=meant)
+            return _EntryFault(message, entry.location, module, meant, named, is_sure=True)
     return None
 
 

@@ -296,13 +296,18 @@ def _refused(written: Written, shown: str, signature: _Signature) -> WrongCall |
         if kind in kinds and kind is not None:
             text = cut(written.source.text[slice(*written.span_of(argument))], _MAX_SHOWN)
             reaction = f"{shown} gets {_KIND_WORDS[kind]}, {text}, in place of {expected}"
-            is_named = text.rpartition(".")[2][:1].isupper()  # no variable
-            if kind in ("type", "node class") and name in _INSTANCES and is_named:
-                section = _SECTIONS.get(name, "")
-                made = text if not section or text.endswith(f".{section}") else f"{text}.{section}"
-                reaction = f"{reaction}; write {made}()"
+            if kind in ("type", "node class") and name in _INSTANCES:
+                reaction += _instance_in_words(text, _SECTIONS.get(name, ""))
             return WrongCall(reaction, "", ())
     return None
+
+
+def _instance_in_words(text: str, section: str) -> str:
+    """Return how an instance of a class is written, or of its section; empty for a variable."""
+    if not text.rpartition(".")[2][:1].isupper():
+        return ""
+    made = text if not section or text.endswith(f".{section}") else f"{text}.{section}"
+    return f"; write {made}()"
 
 
 def _place_of_missing(names: Sequence[str], kinds: Sequence[ArgumentKind | None]) -> int:

@@ -189,21 +189,22 @@ def _without_type(
         workspace.installed.source_of(each.path) for each in manager.parameters or () if each.path
     ]
     lacking = [controller for controller in controllers if controller.name in lacks_type]
-    unread = [each for each in lacking if each.is_own and each.location.path in files]
-    lacking = [controller for controller in lacking if controller.location.path not in files]
-    for controller in unread if not lacking else ():
-        text = (
-            f"only a spawner with --param-file reads the type of {quoted(controller.name)} here: "
-            f"give its spawner this file, or write the type below {MANAGER}"
-        )
-        yield Mismatch(MANAGER_PARAMETERS, text, controller.location, manager.location)
-    if lacking:
-        at = lacking[0].location
+    elsewhere = [controller for controller in lacking if controller.location.path not in files]
+    if elsewhere:
+        at = elsewhere[0].location
         text = (
             "the controller manager is not given the parameters with the type of "
-            f"{_names_of(lacking)} ({at.file_and_line})"
+            f"{_names_of(elsewhere)} ({at.file_and_line})"
         )
         yield Mismatch(MANAGER_PARAMETERS, text, manager.location, at)
+        return
+    for controller in lacking:
+        if controller.is_own:
+            text = (
+                f"only a spawner with --param-file reads the type of {quoted(controller.name)} "
+                f"here: give its spawner this file, or write the type below {MANAGER}"
+            )
+            yield Mismatch(MANAGER_PARAMETERS, text, controller.location, manager.location)
 
 
 def _controllers_without_type(
