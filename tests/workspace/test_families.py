@@ -1277,10 +1277,13 @@ def test_a_plugin_may_be_named_unlike_its_package() -> None:
 
 
 def test_a_module_beside_is_no_package() -> None:
-    """A module of the package itself may be named like messages."""
+    """A module of the package itself may be named like messages, and is imported from its package."""
     texts = edited((_ALARM, "import rclpy\n", "import rclpy\nimport own_msgs\n"))
     assert [it.family for it in sure(agreement_of(texts))] == ["dependencies"]
-    assert sure(agreement_of({**texts, "cart_nodes/cart_nodes/own_msgs.py": ""})) == []
+    beside = {**texts, "cart_nodes/cart_nodes/own_msgs.py": ""}
+    assert [it.family for it in sure(agreement_of(beside))] == ["code"]
+    owned = edited((_ALARM, "import rclpy\n", "import rclpy\nfrom cart_nodes import own_msgs\n"))
+    assert sure(agreement_of({**owned, "cart_nodes/cart_nodes/own_msgs.py": ""})) == []
 
 
 def test_a_robot_that_is_not_used_is_no_sure_problem() -> None:
