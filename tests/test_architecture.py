@@ -165,12 +165,12 @@ WEIGHTS = {
     "ros.launch": 47_450,  # the words of Lyrical, components, and what follows an error
     "ros.log": 4_050,  # names of findings beside their lines, and what keeps a started robot from being read
     "ros.mesh": 4_300,
-    "ros.nodes": 78_250,  # calls, imports and constructors that certainly fail
-    "ros.package": 29_400,  # entry points without a package, a function or an installed module
+    "ros.nodes": 78_950,  # calls, imports and constructors that certainly fail
+    "ros.package": 29_500,  # entry points without a package, a function or an installed module
     "ros.python": 30_000,  # branches, and constants of classes
     "ros.slips": 7_800,  # slips are proven by reading the robot again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads
-    "ros.workspace": 165_750,  # programs that read keys, types that no spawner reads
+    "ros.workspace": 165_950,  # programs that read keys, types that no spawner reads
     "ros.xacro": 28_600,  # xacro:attribute, and letters outside of ASCII
     "ros.xml": 13_400,  # attributes of broken tags and of newer versions of URDF
     "": 400,

@@ -768,7 +768,7 @@ def _cfg_findings(text: str, call: Call) -> Iterator[_Finding]:
 
 def _packages_in(value: Value) -> tuple[str, ...]:
     if isinstance(value, list | tuple):
-        return tuple(name for name in value if isinstance(name, str))
+        return tuple(name.replace("/", ".") for name in value if isinstance(name, str))
     return ()
 
 

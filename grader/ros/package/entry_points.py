@@ -16,6 +16,8 @@ from grader.base.text import (
     MAX_NAMED,
     enumerated,
 )
+from grader.ros.known.released import is_released
+from grader.ros.known.rosdep_words import rosdep_words
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.package import Package
 from grader.ros.python.budget import PYTHON_LIMIT
@@ -40,7 +42,9 @@ _WRITTEN_NAME = re.compile(r"""(?<=['"])[ \t]*([^'"=\s]+)[ \t]*=""")
 
 _MAIN = "main"
 # Arguments of setup() by which it installs modules that packages does not name.
-_OTHER_MODULES = ("package_dir", "py_modules", "package_data")
+_OTHER_MODULES = re.compile(r"package_dir|py_modules|package_data|['\"]lib\b|site-packages")
+_NAMES_PACKAGES = re.compile(r"\bpackages\s*+=")
+_CHANGES_PATH = re.compile(r"\bsys\.(?:path|modules)\b|\baddsitedir\b")
 
 
 class _EntryPoint(NamedTuple):
@@ -177,7 +181,7 @@ def _not_installed(package: Package, entry: _EntryPoint, path: str) -> _EntryFau
     if setup is None or setup.unread or package.is_cmake or home in ("", *setup.packages):
         return None
     text = setup.source.text
-    if "packages" not in text or any(word in text for word in _OTHER_MODULES):
+    if not _NAMES_PACKAGES.search(text) or _OTHER_MODULES.search(text):
         return None
     message = f"setup.py installs no package {home}"
     if f"{home.replace('.', '/')}/__init__.py" not in package.tree.files:
@@ -265,23 +269,35 @@ def modules_beside(package: Package) -> Iterator[_MissingModule]:
         return
     for path, code in _modules_of_entries(package):
         folder = path.rpartition("/")[0]
-        for module, statement in _imported_modules(code, "") if folder else ():
+        around = read_module(package, f"{folder}/__init__.py")
+        texts = [each.source.text for each in (code, around) if each is not None]
+        if not folder or any(map(_CHANGES_PATH.search, texts)):
+            continue
+        for module, statement in _imported_modules(code, ""):
             top = module.partition(".")[0]
-            is_absolute = not getattr(statement, "level", 0)
-            is_beside = f"{folder}/{top}.py" in package.tree.files
-            if is_absolute and is_beside and not _may_be_elsewhere(package, top):
+            if getattr(statement, "level", 0) or f"{folder}/{top}.py" == path:
+                continue
+            if _is_only_beside(package, folder, top):
                 at = location_in(code.source, position_of(statement))
                 yield _MissingModule(top, folder.replace("/", "."), at)
+
+
+def _is_only_beside(package: Package, folder: str, module: str) -> bool:
+    """Return whether a module is in a folder, and nothing installs one of its name elsewhere."""
+    is_there = f"{folder}/{module}.py" in package.tree.files
+    return is_there and not _may_be_elsewhere(package, module)
 
 
 def _may_be_elsewhere(package: Package, module: str) -> bool:
     """Return whether something installs a module of this name that is in no package of Python."""
     setup = package.installation
-    if setup is None or "py_modules" in setup.source.text or module in sys.stdlib_module_names:
+    if setup is None or _OTHER_MODULES.search(setup.source.text):
         return True
     if module in setup.packages or f"{module}.py" in package.tree.files:
         return True
-    return package.find(module) is not None or package.depends_on(module)
+    if package.find(module) is not None or package.depends_on(module) or is_released(module):
+        return True
+    return module in sys.stdlib_module_names or module in rosdep_words().modules
 
 
 def _imported_modules(code: Code, folder: str) -> Iterator[tuple[str, ast.stmt]]:

@@ -43,6 +43,7 @@ from grader.ros.nodes.python.message_imports import wrong_imports
 from grader.ros.nodes.python.node_constructors import early_uses
 from grader.ros.nodes.python.parameter_values import parameters_as_values
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
+from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import binds_unseen, constant_in, dotted, last_name
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
 from grader.ros.python.values import QualifiedName
@@ -170,18 +171,26 @@ def code_faults(
     yield from search.without_response()
     yield from search.waiting_callbacks()
     yield from search.of_programs()
-    yield from _early_uses(module, attributes)
+    yield from _early_uses(module, others, attributes)
     yield from _wrong_calls(module, others, releases or RELEASES)
     yield from wrong_log_calls(module.code, module.parts)
-    yield from parameters_as_values(module.code, module.parts)
+    yield from parameters_as_values(module.code, module.nodes.values())
     yield from search.of_actions()
 
 
-def _early_uses(module: ModuleText, attributes: _PackageAttributes) -> Iterator[CodeFault]:
+def _early_uses(
+    module: ModuleText, others: Mapping[str, ModuleText], attributes: _PackageAttributes
+) -> Iterator[CodeFault]:
     """Yield what constructors of nodes use before the node is made."""
+
+    def is_base(name: str) -> bool:
+        modules = (module, *others.values())
+        classes = [owner for other in modules for owner in other.classes.values()]
+        return any(name == last_name(base) for owner in classes for base in owner.bases)
+
     for owner in module.nodes.values() if not attributes.may_be_more else ():
         if len(owner.bases) == 1 and not owner.keywords:
-            yield from early_uses(module.code, owner, attributes.stored)
+            yield from early_uses(module.code, owner, attributes.stored, is_base)
 
 
 def _wrong_calls(
@@ -195,10 +204,13 @@ def _wrong_calls(
     classes = {*NODE_CLASSES}
     for other in others.values():
         classes.update(f"{other.name}.{node.name}" for node in other.nodes.values())
-    count = 0
+    count, package = 0, module.name.partition(".")[0]
+    assigned = [last_name(node.value) for node in nodes if isinstance(node, ast.Assign)]
+    names_classes = any(name[:1].isupper() for name in assigned)
     for part in module.parts:
         owner = module.nodes.get(part.of) if part.of is not None else None
-        kind_in_part = partial(_kind_in_part, classes, part, _other_names(part.node))
+        other_names = _other_names(part.node) if names_classes else {}
+        kind_in_part = partial(_kind_in_part, package, classes, part, other_names)
         wrong_calls = {
             call: functions.wrong_call(call, owner, {}, kind_in_part) for call in part.calls
         }
@@ -221,15 +233,18 @@ def _other_names(function: ast.AST) -> Mapping[str, ast.expr]:
                 targets=[ast.Name(id=name)], value=ast.Name() | ast.Attribute() as value
             ):
                 values[name] = value
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
-                counts[name] += 1
+        counts.update(bound_names(node))
     return {name: value for name, value in values.items() if counts[name] == 1}
 
 
 def _kind_in_part(
-    classes: Collection[str], part: CodePart, others: Mapping[str, ast.expr], node: ast.expr
+    package: str,
+    classes: Collection[str],
+    part: CodePart,
+    others: Mapping[str, ast.expr],
+    node: ast.expr,
 ) -> Literal["node class", "type"] | None:
-    """Return whether an expression in a part of a module surely is a class.
+    """Return whether an expression in a part of a package's module surely is a class.
 
     This is one of the given classes of nodes, or a type of messages. `others` are other names.
     """
@@ -241,7 +256,8 @@ def _kind_in_part(
     name = f"{value.name}{dot}{rest}"
     if name in classes:
         return "node class"
-    return "type" if _INTERFACE.fullmatch(name) else None
+    is_own = name.partition(".")[0] == package
+    return "type" if _INTERFACE.fullmatch(name) and not is_own else None
 
 
 def _undefined_names(code: Code) -> Iterator[CodeFault]:
@@ -503,8 +519,8 @@ class _Search:
             yield from self._loops(function)
 
     def _made_by(self, method: str) -> set[str]:
-        """Return the variables and attributes that hold what a method of a node makes."""
-        return {
+        """Return the variables and attributes that only hold what a method of a node makes."""
+        made = [
             dotted(node.targets[0])
             for part in self._module.parts
             if part.of is not None
@@ -513,7 +529,13 @@ class _Search:
             and isinstance(node.value, ast.Call)
             and dotted(node.value.func) == f"self.{method}"
             and self._is_of_rclpy(node.value, part)
-        }
+        ]
+        bound = Counter(
+            getattr(node, "attr", getattr(node, "id", ""))
+            for node in (every_node(self._code.tree) if made else ())
+            if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
+        )
+        return {name for name in made if bound[name.rpartition(".")[2]] == made.count(name)}
 
     def _loops(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[CodeFault]:
         """Yield the loops of a callback that do nothing until another callback has run."""

@@ -1,6 +1,7 @@
 """Calls of the logger of rclpy with arguments that it does not take."""
 
 import ast
+import re
 from collections.abc import Iterator, Sequence
 
 from grader.ros.nodes.message_uses import CodePart, certain_nodes
@@ -13,6 +14,11 @@ _LEVELS = frozenset({"debug", "info", "warn", "warning", "error", "fatal"})
 _OPTIONS = frozenset(
     {"throttle_duration_sec", "throttle_time_source_type", "skip_first", "once", "name"}
 )
+# What gives another meaning to get_logger.
+_IS_NO_METHOD = re.compile(
+    r"\bget_logger\s*+(?::[^=\n]{0,100})?=(?!=)|\bdef get_logger\b"
+    r"|\bimport\b[^\n]{0,200}\bget_logger\b"
+)
 
 
 def wrong_log_calls(code: Code, parts: Sequence[CodePart]) -> Iterator[CodeFault]:
@@ -22,8 +28,9 @@ def wrong_log_calls(code: Code, parts: Sequence[CodePart]) -> Iterator[CodeFault
     """
     if "rclpy" not in code.source.text:
         return
+    is_other = _IS_NO_METHOD.search(code.source.text) is not None
     for part in parts:
-        reasons = {call: _reason(call) for call in part.calls}
+        reasons = {call: _reason(call, is_other=is_other) for call in part.calls}
         wrong = {call: reason for call, reason in reasons.items() if reason}
         certain = set(certain_nodes(part.node)) if wrong else set[ast.AST]()
         for call, reason in wrong.items():
@@ -31,14 +38,19 @@ def wrong_log_calls(code: Code, parts: Sequence[CodePart]) -> Iterator[CodeFault
                 yield CodeFault("wrong call", reason, location_in(code.source, position_of(call)))
 
 
-def _reason(call: ast.Call) -> str:
-    """Return why a call of a logger fails; empty for any other call."""
+def _reason(call: ast.Call, *, is_other: bool) -> str:
+    """Return why a call of a logger fails; empty for any other call.
+
+    `is_other` says whether get_logger may be something else than a method of a node.
+    """
     if not isinstance(call.func, ast.Attribute) or call.func.attr not in _LEVELS:
         return ""
     level, logger = call.func.attr, call.func.value
     if last_name(logger.func if isinstance(logger, ast.Call) else logger) != "get_logger":
         return ""
     if not isinstance(logger, ast.Call):
+        if is_other or not isinstance(logger, ast.Attribute):
+            return ""
         return f"get_logger is a method, which has no {level}: write get_logger().{level}()"
     if any(isinstance(argument, ast.Starred) for argument in call.args):
         return ""

@@ -25,7 +25,7 @@ def wrong_imports(code: Code) -> Iterator[CodeFault]:
 def _why_wrong(module: str, names: list[str]) -> str:
     """Return why an import fails; empty for one that does not, or of which it is not known."""
     package, _, section = module.partition(".")
-    if section in INTERFACE_KINDS:
+    if section.partition(".")[0] in INTERFACE_KINDS:
         return ""
     for kind, known in (interface_table(package) or {}).items():
         for name in names:

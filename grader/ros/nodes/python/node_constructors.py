@@ -1,7 +1,7 @@
 """Constructors of nodes that use the node before its base class is initialised, or without that."""
 
 import ast
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.nodes.python.called_functions import methods_of, names_bound_by
@@ -29,16 +29,16 @@ _UNCERTAIN = (
 )
 
 
-def early_uses(code: Code, owner: ast.ClassDef, replaced: Collection[str]) -> Iterator[CodeFault]:
+def early_uses(
+    code: Code, owner: ast.ClassDef, replaced: Collection[str], is_base: Callable[[str], bool]
+) -> Iterator[CodeFault]:
     """Yield the first call in a constructor that needs what super().__init__() makes.
 
     `owner` is a class whose only base is a node of rclpy, `replaced` are attributes that code sets.
+    `is_base` says whether classes inherit one of a name: their constructors may make the node.
     """
-    methods = methods_of(owner)
-    constructor = methods.get("__init__")
-    if constructor is None or any(
-        _initialises(method) for name, method in methods.items() if name != "__init__"
-    ):
+    constructor = methods_of(owner).get("__init__")
+    if constructor is None or _is_made_elsewhere(owner, constructor, is_base):
         return
     known = {*replaced, *(name for node in owner.body for name in names_bound_by(node))}
     for statement in _statements_before(constructor):
@@ -55,12 +55,40 @@ def early_uses(code: Code, owner: ast.ClassDef, replaced: Collection[str]) -> It
             return
 
 
+def _is_made_elsewhere(
+    owner: ast.ClassDef,
+    constructor: ast.FunctionDef | ast.AsyncFunctionDef,
+    is_base: Callable[[str], bool],
+) -> bool:
+    """Return whether something besides a constructor may make the node."""
+    others = [method for method in methods_of(owner).values() if method is not constructor]
+    if any(map(_initialises, others)):
+        return True
+    return not _initialises(constructor) and (
+        is_base(owner.name) or _may_be_made(owner, constructor)
+    )
+
+
 def _statements_before(constructor: ast.FunctionDef | ast.AsyncFunctionDef) -> list[ast.stmt]:
     """Return the statements before that with super().__init__(); all where there is none."""
     for position, statement in enumerate(constructor.body):
         if _initialises(statement):
             return constructor.body[:position]
     return constructor.body
+
+
+def _may_be_made(owner: ast.ClassDef, constructor: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    """Return whether something else may make the node: a decorator, or a function that gets it."""
+    if owner.decorator_list or constructor.decorator_list or "__new__" in methods_of(owner):
+        return True
+    for node in walk(constructor):
+        if isinstance(node, ast.Call):
+            given = [*node.args, *(keyword.value for keyword in node.keywords)]
+            if "self" in map(dotted, given):
+                return True
+        if isinstance(node, ast.Raise) or dotted(node) == "super":
+            return True
+    return False
 
 
 def _initialises(node: ast.AST) -> bool:

@@ -109,10 +109,10 @@ def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
             either = corrections(fault.written, fault.location, fault.meant)
             yield Mismatch(ENTRY_POINT, message, fault.location, corrections=either)
     yield from _other_modules(package)
-    yield from _modules_not_installed(package)
+    yield from _modules_not_installed(workspace, package)
 
 
-def _modules_not_installed(package: Package) -> Iterator[Mismatch]:
+def _modules_not_installed(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
     """Yield the modules of the package that an entry point imports and no build installs."""
     for missing in modules_not_installed(package):
         message = (
@@ -121,7 +121,10 @@ def _modules_not_installed(package: Package) -> Iterator[Mismatch]:
         )
         place = Location(package.path(SETUP), 1, 1)
         yield Mismatch(MODULE_INSTALLED, message, missing.location, place, word=missing.module)
+    setups = [other.installation for other in workspace.packages]
     for beside in modules_beside(package):
+        if any(setup is not None and beside.module in setup.packages for setup in setups):
+            continue
         message = (
             f"there is no module {beside.module} after a build, but {beside.package}."
             f"{beside.module}, so that this import fails: import it from {beside.package}"

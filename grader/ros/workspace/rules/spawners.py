@@ -33,6 +33,7 @@ from grader.ros.workspace.rules.rule_table import (
     SPAWNER_MANAGER,
 )
 
+_OTHER_TYPES = re.compile(r"load_controller|(?<![<-])\bparam\b(?!-)")  # of commands that set a type
 _OTHER_STARTS = re.compile(r"(load|switch|set)_controller|(Load|Switch)Controller")
 _OF_GAZEBO = ("gz_ros2_control/", "ign_ros2_control/", "gazebo_ros2_control/")  # hardware
 _MAX_CONTROLLERS = 3  # in a message
@@ -143,7 +144,7 @@ def _is_defined_by_files(workspace: Workspace, words: Sequence[str | None]) -> b
 
 
 def _is_typed(words: Sequence[str | None]) -> bool:
-    return any(word in ("-t", "--controller-type") for word in words)
+    return any(word and word.startswith(("-t", "--controller-t")) for word in words)
 
 
 def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact]:
@@ -183,7 +184,7 @@ def _without_type(
     The controller manager reads its own section of its files, and a spawner that of its controller.
     """
     manager, lacks_type = _controllers_without_type(workspace, package, launch)
-    if manager is None:
+    if manager is None or _OTHER_TYPES.search(launch.source.text):
         return
     files = [
         workspace.installed.source_of(each.path) for each in manager.parameters or () if each.path
@@ -226,7 +227,8 @@ def _controllers_without_type(
     for controller in _spawned_without_parameters(launch):
         own_parameters = workspace.parameters.read(package, controller, "")
         has_type = "type" in own_parameters.values or f"{controller.node_name}.type" in given.values
-        lacks_type[controller.node_name] = not own_parameters.unknown and not has_type
+        is_first = lacks_type.get(controller.node_name, True)  # one of its spawners may set it
+        lacks_type[controller.node_name] = is_first and not own_parameters.unknown and not has_type
     return manager, {name for name, lacks in lacks_type.items() if lacks}
 
 
