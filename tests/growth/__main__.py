@@ -203,8 +203,10 @@ def main() -> int:
         "fork"
     ).Pool() as pool:  # which inherits the rows: patterns that are recorded cannot be sent
         said = pool.map(_worst, range(len(_ROWS)), chunksize=20)
-    print("".join(said), end="")
-    return int(any(said))
+    # What seems slow is measured again, alone: beside other work one measurement may be too long.
+    again = [_worst(number) for number, text in enumerate(said) if text]
+    print("".join(again), end="")
+    return int(any(again))
 
 
 if __name__ == "__main__":
