@@ -511,16 +511,17 @@ class _Search:
         """
         if self._is_concurrent():
             return
-        clients, rates = self._made_by("create_client"), self._made_by("create_rate")
+        clients = {*self._made_by("create_client")}
+        rates = self._only_bound(self._made_by("create_rate"))
         for function in self._reached():
             for call in _calls_in(function):
                 yield from self._waiting(call, function.name, clients, rates)
             yield from self._sleeping(function)
             yield from self._loops(function)
 
-    def _made_by(self, method: str) -> set[str]:
-        """Return the variables and attributes that only hold what a method of a node makes."""
-        made = [
+    def _made_by(self, method: str) -> list[str]:
+        """Return the variables and attributes that are bound to what a method of a node makes."""
+        return [
             dotted(node.targets[0])
             for part in self._module.parts
             if part.of is not None
@@ -530,6 +531,9 @@ class _Search:
             and dotted(node.value.func) == f"self.{method}"
             and self._is_of_rclpy(node.value, part)
         ]
+
+    def _only_bound(self, made: Sequence[str]) -> set[str]:
+        """Return those of some names that the module binds to nothing else."""
         bound = Counter(
             getattr(node, "attr", getattr(node, "id", ""))
             for node in (every_node(self._code.tree) if made else ())
