@@ -16,6 +16,7 @@ import pytest
 
 from grader.lab.checks.registry import own_checks
 from tests.prose import COMPREHENSIONS, Prose, size
+from tests.weight import MAX_NODES, count_nodes, table
 
 ROOT = Path(__file__).parent.parent / "grader"
 TESTS = Path(__file__).parent
@@ -139,43 +140,6 @@ LIBRARIES = {
 }
 
 
-ROOMS_WITH_WEIGHTS = ("ros", "lab")  # the other packages have one limit each
-# How many nodes a room may have, what is beside rooms counted for its package. A limit is at most 2 % above the figure.
-# It is raised with its reason in the line: what code weighs grows with what it can do, and with nothing else.
-WEIGHTS = {
-    "app": 49_200,  # a running inspection: --watch, editors and renames
-    "base": 18_500,  # problems have their fixes, with the edits of tags
-    "classroom": 71_350,  # functions of complexity at most 10
-    "files": 12_350,  # the end of a log, from a file, a folder or a pipe
-    "lab": 100,
-    "lab.authoring": 48_400,  # drafts ask about nodes and graphs, and give points by the mean
-    "lab.checks": 51_750,  # checks of the graph of what is launched
-    "lab.documents": 10_900,
-    "lab.grading": 13_000,  # what hides the base
-    "lab.hints": 36_300,  # functions of complexity at most 10
-    "lab.rubric": 10_000,
-    "lab.submission": 9_600,  # slips are proven by reading the file again
-    "report": 66_300,  # graphs as text, JSON, DOT, Mermaid and a page
-    "ros": 350,  # the API has the names that checks of the graph use
-    "ros.config": 5_750,  # numbers of parameters in quotes
-    "ros.cpp": 13_400,  # errors of the grammar leave open one statement only
-    "ros.installation": 33_450,  # CMake's targets and expressions, and the dependencies of package.xml
-    "ros.interfaces": 4_400,  # types have the releases that they exist in
-    "ros.known": 10_450,  # whether a program reads keys
-    "ros.launch": 47_450,  # the words of Lyrical, components, and what follows an error
-    "ros.log": 4_050,  # names of findings beside their lines, and what keeps a started robot from being read
-    "ros.mesh": 4_300,
-    "ros.nodes": 78_950,  # calls, imports and constructors that certainly fail
-    "ros.package": 29_500,  # entry points without a package, a function or an installed module
-    "ros.python": 30_000,  # branches, and constants of classes
-    "ros.slips": 7_800,  # slips are proven by reading the robot again
-    "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads
-    "ros.workspace": 165_950,  # programs that read keys, types that no spawner reads
-    "ros.xacro": 28_600,  # xacro:attribute, and letters outside of ASCII
-    "ros.xml": 13_400,  # attributes of broken tags and of newer versions of URDF
-    "": 400,
-    "workers": 3_500,
-}
 # How dense the code may be: see `tests/prose.py`. A limit may only get lower.
 LIMITS = {
     "nodes of a simple statement, mean": 14.6,
@@ -470,7 +434,7 @@ def figures_of_prose() -> dict[str, float]:
     """Return the figures of how dense the code is."""
     code = prose()
     sizes = [size(statement) for statement in code.simple_statements]
-    nodes = weights().total()
+    nodes = count_nodes()
     comprehensions = sum(code.kinds[kind] for kind in COMPREHENSIONS)
     return {
         "nodes of a simple statement, mean": sum(sizes) / len(sizes),
@@ -555,30 +519,11 @@ def _replaced_names(path: Path) -> Iterator[str]:
                     yield f"{module}.{name}"
 
 
-def weights() -> Counter[str]:
-    """Return how many nodes each room has."""
-    counts: Counter[str] = Counter()
-    for module, path in MODULES.items():
-        package, *rest = path.relative_to(ROOT).parts
-        in_room = package in ROOMS_WITH_WEIGHTS and len(rest) > 1
-        room = f"{package}.{rest[0]}" if in_room else package if rest else ""
-        counts[room] += size(prose().trees[module])
-    return counts
-
-
 @pytest.mark.slow
-def test_no_room_gets_heavier() -> None:
-    """No room is above its limit, and no limit is far above its figure."""
-    figures = weights()
-    assert figures.keys() == WEIGHTS.keys()
-    heavy = [
-        f"{room} has {value} nodes, the limit is {WEIGHTS[room]}"
-        for room, value in figures.items()
-        if value > WEIGHTS[room]
-    ]
-    assert heavy == [], "remove code, or raise the limit in WEIGHTS, with the reason in the line"
-    slack = {room: value for room, value in figures.items() if WEIGHTS[room] > 1.02 * value + 100}
-    assert slack == {}
+def test_the_code_stays_within_its_budget() -> None:
+    """All code together has at most MAX_NODES nodes; the table says where they are."""
+    nodes = count_nodes()
+    assert nodes <= MAX_NODES, f"remove code, or take the feature out\n{table()}"
 
 
 @pytest.mark.slow
