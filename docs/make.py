@@ -44,7 +44,7 @@ from grader.report.writers.terminal import render_terminal
 from grader.ros.known.package_files import IndexedKey, facts_in_file, packages_with_files
 from grader.ros.known.parameter_rows import NodeRows, known_nodes, node_rows
 from grader.ros.known.releases import RELEASES
-from grader.ros.workspace.rules.problem_kinds import EVERY_KIND
+from grader.workspace.rules.problem_kinds import EVERY_KIND
 
 KEYS = {
     "The rubric": RUBRIC,

@@ -27,6 +27,7 @@ LAYERS = (
     "files",
     "workers",
     "ros",
+    "workspace",
     "lab",
     "report",
     "classroom",
@@ -35,7 +36,7 @@ LAYERS = (
 )
 ROOMS = {
     "base": (
-        "errors markup merge_conflicts text reuse pairing transforms quantities",
+        "errors late_names markup merge_conflicts text reuse pairing transforms quantities",
         "source names processor_time toml_types",
         "extents problems element_edits toml_file",
         "ignore_comments slips",
@@ -48,10 +49,9 @@ ROOMS = {
         "launch",
         "package",
         "nodes",
-        "workspace",
-        "log",
         "api",
     ),
+    "workspace": ("model", "graph", "rules", "opening", "index", "log", "api"),
     "lab": (
         "documents",
         "submission",
@@ -97,8 +97,6 @@ ROOMS = {
         "cli api",
     ),
 }
-# The rooms inside a room, from the bottom. The modules beside them are above all of them.
-INNER_ROOMS = {"ros.workspace": ("model", "graph", "rules", "index")}
 # The packages, or rooms of them, that may import a library: each has one concern.
 LIBRARIES = {
     "typer": {"app.cli"},
@@ -153,7 +151,8 @@ LIMITS = {
     "packed functions over 200 nodes": 23,
     "small private functions that are used once": 14,
     "code that reads a message": 1,
-    "names of ros that other packages import, besides its API": 131,
+    "names of ros that other packages import, besides its API": 115,
+    "names of the workspace that other packages import, besides its API": 16,
 }
 
 
@@ -163,6 +162,7 @@ def name_of(path: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
+APIS = ("grader.ros.api", "grader.workspace.api")
 MODULES = {name_of(path): path for path in sorted(ROOT.rglob("*.py"))}
 
 
@@ -205,18 +205,8 @@ def points_down(module: str, imported: str) -> bool:
     if rooms is None:
         return True
     if place[1:2] == other[1:2]:
-        return stays_below(".".join(place[:2]), place[2:], other[2:])
-    return height(rooms, other[1]) < height(rooms, place[1])
-
-
-def stays_below(room: str, place: list[str], other: list[str]) -> bool:
-    """Return whether a module may import another one of the same room: of its own inner room, or of a lower one."""
-    inner = INNER_ROOMS.get(room)
-    if inner is None or place[:1] == other[:1]:
         return True
-    heights = [height(inner, path[0]) if path else -1 for path in (place, other)]
-    own, imported = [number if number >= 0 else len(inner) for number in heights]
-    return imported < own or imported == own == len(inner)
+    return height(rooms, other[1]) < height(rooms, place[1])
 
 
 def test_imports_point_down() -> None:
@@ -254,45 +244,47 @@ def test_no_module_of_a_grading_reads_settings() -> None:
         assert not {"grader.app.settings", "grader.app.ignoring"} & {*imports(module)}
 
 
-def test_what_is_above_lab_imports_from_ros_by_its_api() -> None:
-    """The commands, reports, classes and plug-ins name no module inside of `ros`, also not for type checkers."""
+def test_what_is_above_lab_imports_from_ros_and_the_workspace_by_their_apis() -> None:
+    """The commands, reports, classes and plug-ins name no module inside of them, also not for type checkers."""
     places = {
         (module, imported)
         for module in MODULES
         if module.split(".")[1:2] in (["app"], ["report"], ["classroom"], ["plugin"])
         for imported in imports(module)
-        if imported.startswith("grader.ros")
+        if imported.startswith(("grader.ros", "grader.workspace"))
     }
     assert len(places) > 20
-    assert {pair for pair in places if pair[1] != "grader.ros.api"} == set()
+    assert {pair for pair in places if pair[1] not in APIS} == set()
 
 
-def test_the_api_of_ros_has_the_names_that_type_checkers_see() -> None:
-    """Each name of the API is the one of the module that it is imported from for type checkers; each is used."""
-    api = import_module("grader.ros.api")
-    typed = list(names_of_api())
-    assert sorted(api._MODULES) == sorted(name for _, name in typed)
-    for module, name in typed:
-        assert getattr(api, name) is getattr(import_module(module), name)
+@pytest.mark.parametrize("name", APIS)
+def test_an_api_has_the_names_that_type_checkers_see(name: str) -> None:
+    """Each name of the API is the one of the module that it is imported from for type checkers."""
+    api = import_module(name)
+    typed = list(names_of_api(name))
+    assert sorted(" ".join(api._NAMES.values()).split()) == sorted(name for _, name in typed)
+    for module, imported in typed:
+        assert getattr(api, imported) is getattr(import_module(module), imported)
     with pytest.raises(AttributeError, match="no attribute 'Submission'"):
         api.Submission  # noqa: B018
 
 
-def names_of_api() -> Iterator[tuple[str, str]]:
-    """Yield the modules of `ros` with the names of its public API."""
-    for node in ast.walk(prose().trees["grader.ros.api"]):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("grader.ros."):
+def names_of_api(api: str) -> Iterator[tuple[str, str]]:
+    """Yield the modules of a package with the names of its public API."""
+    package = api.removesuffix("api")
+    for node in ast.walk(prose().trees[api]):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(package):
             yield from ((str(node.module), alias.name) for alias in node.names)
 
 
 @pytest.mark.slow
-def test_ros_knows_no_lab_and_no_submission() -> None:
-    """No name in `ros` speaks of them, and no docstring or comment."""
+def test_ros_and_the_workspace_know_no_lab_and_no_submission() -> None:
+    """No name in them speaks of these, and no docstring or comment."""
     words = re.compile(r"(?i)submission|\blab(?:s|\b|_)")
     texts = {
         path.relative_to(ROOT).as_posix(): chain(*_words_of_code(path))
         for module, path in MODULES.items()
-        if module.startswith("grader.ros.")
+        if module.startswith(("grader.ros.", "grader.workspace."))
     }
     found = {(path, text) for path, lines in texts.items() for text in lines if words.search(text)}
     assert found == set()
@@ -313,7 +305,7 @@ def test_no_type_of_a_workspace_has_many_members() -> None:
     """A type of the model or of the graph with more than twenty fields and methods is two things."""
     many = {}
     for module in MODULES:
-        if module.startswith(("grader.ros.workspace.model.", "grader.ros.workspace.graph.")):
+        if module.startswith(("grader.workspace.model.", "grader.workspace.graph.")):
             classes = [it for it in prose().trees[module].body if isinstance(it, ast.ClassDef)]
             for node in classes:
                 members = sum(isinstance(it, ast.FunctionDef | ast.AnnAssign) for it in node.body)
@@ -327,7 +319,7 @@ def test_only_rules_say_that_something_does_not_agree() -> None:
     makers = {"Mismatch", "warning", "problem"}
     places = []
     for module, tree in prose().trees.items():
-        if module.startswith("grader.ros.workspace.rules."):
+        if module.startswith("grader.workspace.rules."):
             continue
         for node in ast.walk(tree):
             if not isinstance(node, ast.Call):
@@ -352,9 +344,6 @@ def test_every_package_has_a_layer() -> None:
     for package, layers in ROOMS.items():
         rooms = {place[1] for place in places if place[0] == package and len(place) > 1}
         assert sorted(" ".join(layers).split()) == sorted(rooms), package
-    for room, layers in INNER_ROOMS.items():
-        folder = ROOT.joinpath(*room.split("."))
-        assert sorted(layers) == sorted(path.parent.name for path in folder.glob("*/__init__.py"))
 
 
 # What names its functions itself: the registry of checks, the commands of typer, the Python API.
@@ -448,20 +437,26 @@ def figures_of_prose() -> dict[str, float]:
         "packed functions over 200 nodes": sum(it.is_packed(200) for it in code.functions),
         "small private functions that are used once": len(code.tiny_functions()),
         "code that reads a message": len(code.comparisons_of_messages()),
-        "names of ros that other packages import, besides its API": len(names_from_ros()),
+        "names of ros that other packages import, besides its API": len(names_from("ros")),
+        "names of the workspace that other packages import, besides its API": len(
+            names_from("workspace")
+        ),
     }
 
 
-def names_from_ros() -> set[tuple[str, str]]:
-    """Return the modules of `ros` with the names that other packages import from them, and that are not of its API."""
+def names_from(package: str) -> set[tuple[str, str]]:
+    """Return the modules of `ros` or `workspace` with the names that higher packages import from them, and that are not of
+    its API.
+    """
+    prefix = f"grader.{package}."
     pairs: set[tuple[str, str]] = set()
     for module in MODULES:
-        if module.startswith("grader.ros."):
+        if module.startswith((prefix, "grader.workspace.")):
             continue
         for node in ast.walk(prose().trees[module]):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("grader.ros."):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(prefix):
                 pairs |= {(str(node.module), alias.name) for alias in node.names}
-    return {pair for pair in pairs - {*names_of_api()} if pair[0] != "grader.ros.api"}
+    return {pair for pair in pairs - {*names_of_api(f"{prefix}api")} if pair[0] not in APIS}
 
 
 def test_no_test_replaces_a_name_that_another_module_imports() -> None:

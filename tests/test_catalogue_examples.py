@@ -24,8 +24,8 @@ from grader.ros.package.finding import read_packages
 from grader.ros.package.found_problems import build_problems, package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Absent, Read, read_as_ros
-from grader.ros.workspace.rules.file_problems import listed_problems
-from grader.ros.workspace.rules.problem_kinds import EVERY_KIND
+from grader.workspace.rules.file_problems import listed_problems
+from grader.workspace.rules.problem_kinds import EVERY_KIND
 from tests.checks.submissions import png
 from tests.command_line import ROOT
 from tests.oracles.check_urdf import check_urdf

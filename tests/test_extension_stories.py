@@ -112,7 +112,7 @@ right = "Node(package='turtlesim', executable='turtlesim_node', name='turtle'),"
 """
 RULE_TEST = '''"""A note of an author in a launch file is named."""
 
-from grader.ros.workspace.rules.reading import read_agreement
+from grader.workspace.rules.reading import read_agreement
 from tests.workspace.rovers import LAUNCH, Edit, rover
 
 
@@ -199,7 +199,7 @@ def test_a_new_check(project: Path) -> None:
 def test_a_new_release(project: Path) -> None:
     """A release is a name, its second name and its Ubuntu; the tables know nothing of it, and nothing is wrong for it."""
     replace(project / "grader/ros/known/releases.py", '"rolling"', '"mighty", "rolling"')
-    stated = project / "grader/ros/workspace/model/stated_releases.py"
+    stated = project / "grader/workspace/model/stated_releases.py"
     replace(stated, "|Ridley", "|Mantaray|Ridley")
     replace(
         stated,
@@ -251,7 +251,7 @@ CALL = """\
 
 def test_a_new_rule(project: Path) -> None:
     """A rule is a row of the table, a function in the file of its family, an example, a test and a line of the changelog."""
-    rules = project / "grader/ros/workspace/rules"
+    rules = project / "grader/workspace/rules"
     replace(rules / "rule_table.py", "\n_moveit = ", f"{RULE}\n_moveit = ")
     with (rules / "one_machine.py").open("a", encoding="utf-8") as family:
         family.write(FINDER)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from grader.base.errors import GraderError
 from grader.files.log_file import read_log, read_piped_log
-from grader.ros.api import MAX_LOG, STANDARD_INPUT
+from grader.workspace.api import MAX_LOG, STANDARD_INPUT
 
 
 def read_named_log(log: str, path: str, pass_on: Callable[[bytes], None]) -> bytes:

@@ -13,7 +13,8 @@ from grader.base.names import did_you_mean
 from grader.base.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
 from grader.base.toml_types import simple_type, toml_type
 from grader.files.reading import read_capped
-from grader.ros.api import EVERY_KIND, RULES, Release, StatedReleases
+from grader.ros.api import Release, StatedReleases
+from grader.workspace.api import EVERY_KIND, RULES
 
 _NAMES = ("grader.toml", "pyproject.toml")
 _MAX_SIZE = 256 * 1024  # bytes of such a file

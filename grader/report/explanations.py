@@ -19,13 +19,8 @@ from grader.lab.rubric.criterion import Criterion, worth
 from grader.lab.rubric.rubric import Rubric, shipped_rubrics
 from grader.report.criteria import model_lines
 from grader.report.examples import example_blocks, explanation_of
-from grader.ros.api import (
-    EVERY_KIND,
-    RULES,
-    Rule,
-    parameter_explanation,
-    releases_explanation,
-)
+from grader.ros.api import parameter_explanation, releases_explanation
+from grader.workspace.api import EVERY_KIND, RULES, Rule
 
 _WIDTH = 80
 _FOR_INSTRUCTORS = "For instructors: how it is checked\n----------------------------------"

@@ -20,7 +20,8 @@ from grader.report.readings import UNDECIDED, VERDICTS
 from grader.ros.api import Configuration, Joint, Reading
 
 if TYPE_CHECKING:
-    from grader.ros.api import Extent, LogAnswer, MeshLoader
+    from grader.ros.api import MeshLoader
+    from grader.workspace.api import Extent, LogAnswer
 
 MAX_LISTED = 500  # links, or problems on a page
 _MAX_INDENT = 60

@@ -7,7 +7,7 @@ from functools import cached_property
 from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.report.inspection import Inspection
-from grader.ros.api import (
+from grader.workspace.api import (
     Connection,
     GraphEnd,
     GraphNode,

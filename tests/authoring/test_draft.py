@@ -16,7 +16,7 @@ from grader.files.reading import URDF_LIMIT
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import Rubric, load_rubric
 from grader.lab.submission.opening import open_submission
-from grader.ros.workspace.rules.rule_table import FAMILIES
+from grader.workspace.rules.rule_table import FAMILIES
 from tests.command_line import ROOT, Done, run
 from tests.workspace.carts import Edit, agreement_of, cart_files, edited
 from tests.workspace.test_families import WRONG

@@ -6,7 +6,7 @@ from grader.files.tree import overlaid
 from grader.lab.authoring.file_equivalents import file_equivalents
 from grader.lab.submission.submission import Submission
 from grader.ros.config.yaml_nodes import yaml_value
-from grader.ros.workspace.rules.reading import read_agreement
+from grader.workspace.rules.reading import read_agreement
 from tests.workspace.carts import cart, cart_files
 
 pytestmark = pytest.mark.slow

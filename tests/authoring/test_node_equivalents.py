@@ -8,8 +8,8 @@ from grader.files.tree import overlaid
 from grader.lab.authoring.node_equivalents import node_equivalents
 from grader.lab.submission.opening import open_with_packages
 from grader.lab.submission.submission import Submission
-from grader.ros.api import launch_graph
-from grader.ros.workspace.rules.reading import read_agreement
+from grader.workspace.api import launch_graph
+from grader.workspace.rules.reading import read_agreement
 
 pytestmark = pytest.mark.slow
 

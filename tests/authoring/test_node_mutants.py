@@ -6,7 +6,7 @@ import pytest
 
 from grader.base.source import Source
 from grader.lab.authoring.node_mutants import node_changes
-from grader.ros.workspace.rules.rule_table import Family
+from grader.workspace.rules.rule_table import Family
 from tests.workspace.carts import cart
 from tests.workspace.test_nodes import laundry_files
 

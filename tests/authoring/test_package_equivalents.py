@@ -8,7 +8,7 @@ from grader.files.tree import overlaid
 from grader.lab.authoring.package_equivalents import package_equivalents
 from grader.lab.submission.opening import open_with_packages
 from grader.lab.submission.submission import Submission
-from grader.ros.workspace.rules.reading import read_agreement
+from grader.workspace.rules.reading import read_agreement
 from tests.command_line import ROOT
 
 pytestmark = pytest.mark.slow

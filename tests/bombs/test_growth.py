@@ -12,7 +12,7 @@ from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
 from grader.ros.package.robot_file import Read
 from grader.ros.python import budget
-from grader.ros.workspace.opening import open_workspace
+from grader.workspace.opening.opening import open_workspace
 from tests.bombs.files import Files, package
 from tests.bombs.generators import BOMBS
 from tests.bombs.long_texts import LONG_TEXTS

@@ -6,7 +6,7 @@ from shutil import copytree
 
 import pytest
 
-from grader.ros.workspace.graph.graph_form import graph_form
+from grader.workspace.graph.graph_form import graph_form
 from tests.command_line import run
 from tests.labs.test_graph_labs import rubric_text, written
 from tests.workspace.launch_graphs import graph_of_actions

@@ -13,7 +13,7 @@ from grader.base.problems import NO_FIXES, Fix, Fixes, Problem
 from grader.base.source import Edit
 from grader.files.tree import make_tree, overlaid
 from grader.report.formats import Format, InspectFormat
-from grader.ros.api import read_workspace
+from grader.workspace.api import read_workspace
 from tests.command_line import run, run_process
 from tests.samples import ROOT
 

@@ -11,7 +11,7 @@ from typer.main import get_command
 
 from grader.app.cli.app import COMMANDS, make_app
 from grader.app.cli.usage import commands_here
-from grader.ros.workspace.rules.rule_table import FAMILIES
+from grader.workspace.rules.rule_table import FAMILIES
 from tests.command_line import ROOT, run, run_with_input
 from tests.corpus.cases import read_corpus
 

@@ -13,7 +13,7 @@ import pytest
 from grader.base.errors import InputError
 from grader.files import log_file
 from grader.files.log_file import read_log, read_piped_log
-from grader.ros.api import MAX_LOG
+from grader.workspace.api import MAX_LOG
 from tests.command_line import GRADER, ROOT, Done, run, run_with_input
 
 SAMPLE = ROOT / "submissions/diffdrive/spawner-misspelt"

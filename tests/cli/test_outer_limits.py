@@ -14,7 +14,7 @@ import grader.app.commands.inspect_urdf
 import grader.app.hints_and_fix
 import grader.lab.grading.subjects
 import grader.lab.hints.hinting
-import grader.ros.workspace.opening
+import grader.workspace.opening.opening
 from grader.app.cli import app, ending
 from grader.base.errors import OutOfTime
 from tests.command_line import ROOT, run
@@ -67,7 +67,7 @@ def test_reading_ends(
     """One line says which limit it was, and nothing was graded: exit code 2."""
     monkeypatch.setitem(app._LIMITED, command, 60 if what is fill_memory else 1)
     monkeypatch.setattr(ending, "_MEMORY", 512 * 1024**2)
-    monkeypatch.setattr(grader.ros.workspace.opening, "read_as_ros", what)
+    monkeypatch.setattr(grader.workspace.opening.opening, "read_as_ros", what)
     done = run((command, URDF))
     assert (done.returncode, done.stdout, done.stderr) == (2, b"", b"grader: " + said + b"\n")
 
@@ -147,7 +147,7 @@ def test_a_lower_limit_of_the_shell_is_named(limit: str, tmp_path: Path) -> None
     program = tmp_path / "hang.py"
     program.write_text(
         "import sys\n"
-        "import grader.ros.workspace.opening as opening\n"
+        "import grader.workspace.opening.opening as opening\n"
         "from grader.app.cli.app import run\n"
         "from tests.cli.test_outer_limits import hang\n"
         "opening.read_as_ros = hang\n"

@@ -12,7 +12,7 @@ from grader.app.editor.places import TextPlace
 from grader.app.editor.renaming import CannotRenameError, renamed
 from grader.app.editor.session import EditorSession
 from grader.app.editor.text_ranges import TextRanges
-from grader.ros.workspace.index.written_names import WrittenName
+from grader.workspace.index.written_names import WrittenName
 from tests.command_line import ROOT
 
 # With how many names are renamed, and how many are refused.

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from lsprotocol import types as lsp
 
-from grader.ros.workspace.index.offered_elements import offered_elements
+from grader.workspace.index.offered_elements import offered_elements
 from tests.command_line import ROOT
 from tests.editor.client import Act, Editor, shared_editor
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from grader.files.reading import URDF_LIMIT
-from grader.ros.workspace.opening import open_workspace
-from grader.ros.workspace.rules.reading import read_agreement
+from grader.workspace.opening.opening import open_workspace
+from grader.workspace.rules.reading import read_agreement
 from tests.labs.variants import make_variant
 
 

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from grader.ros.api import RULES
 from grader.ros.known.output_rows import OutputRow, known_outputs
-from grader.ros.log.log_messages import read_messages
-from grader.ros.workspace.rules.problem_kinds import EVERY_KIND
+from grader.workspace.api import RULES
+from grader.workspace.log.log_messages import read_messages
+from grader.workspace.rules.problem_kinds import EVERY_KIND
 
 _SAID = tomllib.loads(Path(__file__).with_name("outputs_said.toml").read_text("utf-8"))["said"]
 # Repository and commit or version, a file, and its line.

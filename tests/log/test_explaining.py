@@ -6,8 +6,9 @@ import pytest
 
 from grader.base.errors import NotDecided
 from grader.files.tree import make_tree, overlaid
-from grader.ros.api import LogAnswer, Read, explain_log, read_workspace
-from grader.ros.log import explaining
+from grader.ros.api import Read
+from grader.workspace.api import LogAnswer, explain_log, read_workspace
+from grader.workspace.log import explaining
 
 _SETUP = """
 from setuptools import setup

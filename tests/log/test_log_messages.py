@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.ros.log.log_messages import MAX_LINES, MAX_LOG, LogMessage, read_messages
+from grader.workspace.log.log_messages import MAX_LINES, MAX_LOG, LogMessage, read_messages
 
 _PARTS = st.sampled_from(
     [

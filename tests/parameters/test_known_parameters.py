@@ -21,9 +21,9 @@ from grader.ros.known.parameter_rows import (
     rows_of,
 )
 from grader.ros.known.releases import RELEASES, Release
-from grader.ros.workspace.all_robots import read_workspace
-from grader.ros.workspace.rules.names import Mismatch
-from grader.ros.workspace.rules.reading import read_agreement
+from grader.workspace.opening.all_robots import read_workspace
+from grader.workspace.rules.names import Mismatch
+from grader.workspace.rules.reading import read_agreement
 from tests.workspace.rovers import FILES
 
 MAX_SIZE = 400 * 1024  # bytes of the rows in the wheel

@@ -14,8 +14,8 @@ import pytest
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
 from grader.ros.known.releases import Release
-from grader.ros.workspace.all_robots import read_workspace
-from grader.ros.workspace.rules.reading import read_agreement
+from grader.workspace.opening.all_robots import read_workspace
+from grader.workspace.rules.reading import read_agreement
 from tests.workspace.rovers import FILES
 
 _VARIABLE = "PARAMETER_CHECKOUTS"

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from grader.base.source import Location
 from grader.report.drawing.graph_layout import DrawnBox, lay_out
 from grader.report.shown_graph import transform_tree
-from grader.ros.api import GraphTransform
+from grader.workspace.api import GraphTransform
 
 _AT = Location("a.py", 1, 1)
 

@@ -14,9 +14,9 @@ from grader.base.source import Location, Source
 from grader.report.inspection import Inspection
 from grader.report.writers.inspection_terminal import inspection_terminal
 from grader.ros.known.releases import NOT_STATED
-from grader.ros.workspace.extent import Extent
-from grader.ros.workspace.read_calls import ReadCalls
-from grader.ros.workspace.rules.problem_kinds import EVERY_KIND
+from grader.workspace.model.read_calls import ReadCalls
+from grader.workspace.opening.extent import Extent
+from grader.workspace.rules.problem_kinds import EVERY_KIND
 from tests.examples import examples
 
 SCREEN, WIDTH, MOST = 40, 80, 35

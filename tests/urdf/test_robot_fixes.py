@@ -5,7 +5,7 @@ import pytest
 from grader.base.element_edits import edited
 from grader.base.source import Edits
 from grader.files.tree import make_tree, overlaid
-from grader.ros.api import read_workspace
+from grader.workspace.api import read_workspace
 
 _PATH = "arm.urdf"
 _PLAIN = """\

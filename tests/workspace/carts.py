@@ -7,8 +7,8 @@ from pathlib import Path
 from grader.files.tree import make_tree, overlaid
 from grader.lab.submission.opening import submission_of
 from grader.lab.submission.submission import Lab, Submission
-from grader.ros.workspace.rules.names import Agreement, Mismatch
-from grader.ros.workspace.rules.reading import read_agreement
+from grader.workspace.rules.names import Agreement, Mismatch
+from grader.workspace.rules.reading import read_agreement
 
 Edit = tuple[str, str, str]  # the end of a path, and a text there that occurs once, with a new one
 FOLDER = Path(__file__).parent.parent / "corpus" / "given" / "cartkit" / "src"

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
-from grader.ros.workspace.all_robots import read_workspace
-from grader.ros.workspace.graph.launch_graph import GraphNode, LaunchGraph
-from grader.ros.workspace.opened import OpenedWorkspace
+from grader.workspace.graph.launch_graph import GraphNode, LaunchGraph
+from grader.workspace.opening.all_robots import read_workspace
+from grader.workspace.opening.opened import OpenedWorkspace
 
 MANIFEST = """\
 <package format="3">

@@ -2,9 +2,9 @@
 
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
-from grader.ros.workspace.all_robots import read_workspace
-from grader.ros.workspace.opened import OpenedWorkspace
-from grader.ros.workspace.rules.name_problems import name_problems
+from grader.workspace.opening.all_robots import read_workspace
+from grader.workspace.opening.opened import OpenedWorkspace
+from grader.workspace.rules.name_problems import name_problems
 
 Edit = tuple[
     str, str, str

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.ros.workspace.model.code_text import code_alone
+from grader.workspace.model.code_text import code_alone
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.ros.workspace.rules.names import Mismatch
+from grader.workspace.rules.names import Mismatch
 from tests.workspace.carts import agreement_of, edited
 
 pytestmark = pytest.mark.slow

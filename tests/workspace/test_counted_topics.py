@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.ros.workspace.rules.names import Counted
+from grader.workspace.rules.names import Counted
 from tests.workspace.carts import Edit, agreement_of, edited
 
 pytestmark = pytest.mark.slow

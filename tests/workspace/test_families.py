@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.ros.workspace.rules.rule_table import Family
+from grader.workspace.rules.rule_table import Family
 from tests.workspace.carts import Edit, agreement_of, edited, sure
 
 _LAUNCH, _ROBOT_LAUNCH = "launch/cart.launch.py", "launch/robot.launch.py"

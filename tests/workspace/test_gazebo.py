@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.ros.workspace.rules.names import Correction
+from grader.workspace.rules.names import Correction
 from tests.workspace.carts import agreement_of, sure
 
 pytestmark = pytest.mark.slow

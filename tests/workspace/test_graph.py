@@ -4,7 +4,7 @@ from pathlib import Path
 
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab
-from grader.ros.workspace.graph.graph import Graph, graph_of
+from grader.workspace.graph.graph import Graph, graph_of
 from tests.workspace.rule_examples import EXAMPLES, files_of_example
 
 

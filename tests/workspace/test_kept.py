@@ -11,7 +11,7 @@ from grader.base.reuse import Memory
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
 from grader.ros.package.robot_file import Read
-from grader.ros.workspace.all_robots import read_workspace
+from grader.workspace.opening.all_robots import read_workspace
 from tests.command_line import ROOT
 from tests.workspace.random_edits import Files, edited_files, edited_text, files_of
 

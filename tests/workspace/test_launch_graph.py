@@ -5,16 +5,16 @@ from typing import Any
 import pytest
 
 from grader.base.errors import NotDecided
-from grader.ros.workspace.graph import started_graph
-from grader.ros.workspace.graph.launch_graph import (
+from grader.workspace.graph import started_graph
+from grader.workspace.graph.launch_graph import (
     GraphEnd,
     LaunchGraph,
     connections_in,
     unconnected_ends,
 )
-from grader.ros.workspace.graph.manual_ends import manual_ends
-from grader.ros.workspace.graph.message_ways import find_way
-from grader.ros.workspace.model.given_files import GivenFiles
+from grader.workspace.graph.manual_ends import manual_ends
+from grader.workspace.graph.message_ways import find_way
+from grader.workspace.model.given_files import GivenFiles
 from tests.workspace.launch_graphs import (
     CMAKE,
     EYE,

@@ -4,7 +4,7 @@ import pytest
 
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
-from grader.ros.workspace.all_robots import read_workspace
+from grader.workspace.opening.all_robots import read_workspace
 from tests.mesh.mesh_files import CUBE, binary_stl, obj, text_stl
 
 pytestmark = pytest.mark.slow

@@ -7,7 +7,7 @@ import pytest
 from grader.files.tree import make_tree, overlaid
 from grader.lab.submission.opening import submission_of
 from grader.lab.submission.submission import Lab
-from grader.ros.workspace.rules.reading import read_agreement
+from grader.workspace.rules.reading import read_agreement
 from tests.command_line import run
 from tests.workspace.rule_examples import files_of_rule
 

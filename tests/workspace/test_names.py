@@ -1,7 +1,7 @@
 """A name that is used has to be defined: definitions and uses made by hand."""
 
 from grader.base.source import Location
-from grader.ros.workspace.rules.names import (
+from grader.workspace.rules.names import (
     Agreement,
     Compared,
     Correction,
@@ -13,7 +13,7 @@ from grader.ros.workspace.rules.names import (
     Use,
     agreement,
 )
-from grader.ros.workspace.rules.rule_table import JOINT_DEFINED, TOPIC_TYPE
+from grader.workspace.rules.rule_table import JOINT_DEFINED, TOPIC_TYPE
 
 _HERE, _THERE, _LATER = (
     Location("a.yaml", 3, 5),

@@ -4,8 +4,8 @@ from functools import cache
 
 import pytest
 
-from grader.ros.workspace.graph.code_ends import opened_by
-from grader.ros.workspace.rules.names import Mismatch
+from grader.workspace.graph.code_ends import opened_by
+from grader.workspace.rules.names import Mismatch
 from tests.labs.variants import FOLDER
 from tests.workspace.carts import Edit, agreement_of, cart
 

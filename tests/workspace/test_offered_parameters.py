@@ -5,9 +5,9 @@ import pytest
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
 from grader.ros.known.releases import StatedReleases
-from grader.ros.workspace.all_robots import read_workspace
-from grader.ros.workspace.index.offered_parameters import parameter_text, parameters_below
-from grader.ros.workspace.model.workspace import Workspace
+from grader.workspace.index.offered_parameters import parameter_text, parameters_below
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.opening.all_robots import read_workspace
 from tests.command_line import ROOT
 from tests.workspace.random_edits import files_of
 

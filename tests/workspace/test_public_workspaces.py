@@ -4,7 +4,7 @@ import re
 import tomllib
 from collections import Counter
 
-from grader.ros.workspace.rules.rule_table import RULES
+from grader.workspace.rules.rule_table import RULES
 from tests.command_line import ROOT
 
 _TABLE = ROOT / "tests/workspace/public_workspaces.toml"

@@ -5,7 +5,7 @@ import tomllib
 from collections.abc import Iterable
 from typing import Any
 
-from grader.ros.workspace.rules.problem_kinds import EVERY_KIND
+from grader.workspace.rules.problem_kinds import EVERY_KIND
 from tests.command_line import ROOT
 
 _TABLE = tomllib.loads(

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from grader.ros.python import budget
-from grader.ros.workspace.rules.rule_table import NAME_CATALOGUE, RULES
+from grader.workspace.rules.rule_table import NAME_CATALOGUE, RULES
 from tests.test_catalogue_examples import ENTRIES, KINDS
 from tests.test_misconfigurations import inspected
 from tests.workspace.rule_examples import (

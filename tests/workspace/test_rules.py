@@ -6,8 +6,8 @@ from textwrap import indent
 
 from grader.lab.checks.registry import check_names
 from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
-from grader.ros.workspace.rules import rule_table
-from grader.ros.workspace.rules.rule_table import FAMILIES, NAME_CATALOGUE, RULES, Rule
+from grader.workspace.rules import rule_table
+from grader.workspace.rules.rule_table import FAMILIES, NAME_CATALOGUE, RULES, Rule
 from tests.command_line import ROOT, run
 from tests.workspace.rule_examples import EXAMPLES
 
@@ -31,7 +31,7 @@ def test_a_sentence_says_what_is_right() -> None:
 
 def test_every_rule_is_named_by_a_finder() -> None:
     """A row without code that finds what breaks it is a row too many."""
-    folder = ROOT / "grader/ros/workspace"
+    folder = ROOT / "grader/workspace"
     texts = [path.read_text(encoding="utf-8") for path in folder.rglob("*.py")]
 
     uses = "\n".join(text for text in texts if "class Rule(NamedTuple)" not in text)
@@ -49,7 +49,7 @@ def test_every_rule_is_named_by_a_finder() -> None:
 def test_a_function_finds_what_breaks_one_rule() -> None:
     """A finder that makes the findings of two rules is two functions."""
     several = {}
-    for path in (ROOT / "grader/ros/workspace/rules").glob("*.py"):
+    for path in (ROOT / "grader/workspace/rules").glob("*.py"):
         for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(function, ast.FunctionDef):
                 names = {node.id for node in ast.walk(function) if isinstance(node, ast.Name)}

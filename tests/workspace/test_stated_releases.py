@@ -10,8 +10,8 @@ from grader.files.tree import make_tree, overlaid
 from grader.lab.submission.opening import submission_of
 from grader.lab.submission.submission import Lab
 from grader.ros.known.releases import RELEASES, Release, StatedReleases, other_name
-from grader.ros.workspace.model.stated_releases import stated_releases
-from grader.ros.workspace.rules.reading import read_agreement
+from grader.workspace.model.stated_releases import stated_releases
+from grader.workspace.rules.reading import read_agreement
 
 pytestmark = pytest.mark.slow
 

@@ -7,7 +7,7 @@ import pytest
 from grader.files.tree import make_tree, overlaid
 from grader.lab.submission.opening import submission_of
 from grader.lab.submission.submission import Lab, Submission
-from grader.ros.workspace.rules.reading import read_agreement
+from grader.workspace.rules.reading import read_agreement
 
 pytestmark = pytest.mark.slow
 

@@ -9,11 +9,11 @@ from grader.base.extents import ended
 from grader.base.source import Location, Source
 from grader.files.tree import Tree, make_tree, overlaid
 from grader.ros.package.robot_file import Read
-from grader.ros.workspace.all_robots import read_workspace
-from grader.ros.workspace.index.all_names import WorkspaceNames
-from grader.ros.workspace.index.written_names import Role, WrittenName, span_of_name
-from grader.ros.workspace.opened import OpenedWorkspace
-from grader.ros.workspace.opening import open_workspace
+from grader.workspace.index.all_names import WorkspaceNames, read_names
+from grader.workspace.index.written_names import Role, WrittenName, span_of_name
+from grader.workspace.opening.all_robots import read_workspace
+from grader.workspace.opening.opened import OpenedWorkspace
+from grader.workspace.opening.opening import open_workspace
 
 pytestmark = pytest.mark.slow
 
@@ -41,7 +41,7 @@ def test_the_text_at_a_place_is_the_name(folder: Path) -> None:
     expression that makes it. A file is at its start.
     """
     opened = open_workspace(str(folder), _SIZE, {})
-    for name in opened.names().names:
+    for name in read_names(opened.workspace).names:
         text = _text_at(opened.whole_tree, name.location)
         if name.kind in ("file", "program") and (name.role, text) == ("definition", ""):
             at = name.location  # the file itself
@@ -97,7 +97,7 @@ _MANIFEST = (
 def _written(opened: OpenedWorkspace, path: str = "") -> list[str]:
     """Return the names as the kind, the role, the name, its line, and the text if it is made."""
     rows = []
-    for it in opened.names().names:
+    for it in read_names(opened.workspace).names:
         if it.location.path.endswith(path):
             text = f" = {_text_at(opened.whole_tree, it.location)}" if it.is_made else ""
             rows.append(f"{it.kind} {it.role} {it.name} {it.location.line}{text}")
@@ -212,7 +212,7 @@ def test_arguments_of_launch_files_are_where_they_are_written() -> None:
         "launch argument definition gui 3",
         "launch argument use gui 5",
     ]
-    names = opened.names()
+    names = read_names(opened.workspace)
     arguments = [it for it in names.names if it.kind == "launch argument"]
     assert len({it.owner for it in arguments}) == 3
     assert {it.location.path for it in names.same_as(arguments[0])} == {"launch/a.launch.py"}
@@ -239,7 +239,7 @@ def test_names_belong_to_their_robot() -> None:
             "c/d.urdf.xacro": whole.format("d"),
         }
     )
-    names = opened.names()
+    names = read_names(opened.workspace)
     assert {it.owner for it in names.names if it.kind in ("link", "joint")} == {
         "a/a.urdf",
         "b/b.urdf",
@@ -277,7 +277,7 @@ def test_a_name_that_is_renamed_at_all_its_places_still_agrees(folder: Path) -> 
     renamed: no use is missed that anything compares.
     """
     opened = open_workspace(str(folder), _SIZE, {})
-    names, before = opened.names(), _problems(opened)
+    names, before = read_names(opened.workspace), _problems(opened)
     renamed: set[frozenset[Location]] = set()
     for name in names.names:
         group = names.same_as(name)

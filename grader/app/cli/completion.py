@@ -42,7 +42,7 @@ def offer_explained(context: typer.Context, incomplete: str) -> list[str]:
 
 def offer_codes(incomplete: str) -> list[str]:
     """Return the problem codes and the names of rules."""
-    from grader.ros.api import RULES
+    from grader.workspace.api import RULES
 
     codes: list[str] = []
     for file in sorted(shipped_folder("docs", "examples").glob("*.toml")):

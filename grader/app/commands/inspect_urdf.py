@@ -26,17 +26,8 @@ from grader.report.invocation import Saves, read_arguments, read_saves
 from grader.report.repository import base_of, folder_of
 from grader.report.screen import Screen
 from grader.report.writing import Terminal, Warn
-from grader.ros.api import (
-    Absent,
-    Configuration,
-    OpenedWorkspace,
-    Read,
-    Reading,
-    Release,
-    StatedReleases,
-    Unreadable,
-    open_workspace,
-)
+from grader.ros.api import Absent, Configuration, Read, Reading, Release, StatedReleases, Unreadable
+from grader.workspace.api import OpenedWorkspace, open_workspace
 
 _MAX_NAMED = 20
 # The rules of wheels that are on the wrong side, or turn backward, which drive a robot elsewhere.
@@ -227,7 +218,7 @@ def _with_log(inspection: Inspection, opened: OpenedWorkspace, log: bytes | None
     """Return an inspection with what the files say of a log, also by findings that are ignored."""
     if log is None:
         return inspection
-    from grader.ros.api import explain_log  # late: few inspections have a log
+    from grader.workspace.api import explain_log  # late: few inspections have a log
 
     return replace(inspection, log=explain_log(opened, inspection.problems, log))
 

@@ -45,18 +45,10 @@ from grader.report.writers.rubric_test_result import (
     unexamined_line,
 )
 from grader.report.writing import Terminal, Warn, missing_folder, save_bytes
-from grader.ros.api import (
-    MANIFEST,
-    STANDARD_INPUT,
-    Absent,
-    Configuration,
-    Read,
-    Unreadable,
-    launch_files,
-    launch_graph,
-)
+from grader.ros.api import MANIFEST, Absent, Configuration, Read, Unreadable
 from grader.workers.pool import Processes, processors
 from grader.workers.queue import Progress
+from grader.workspace.api import STANDARD_INPUT, launch_files, launch_graph
 
 _SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
 _GRAPH = ".mmd"  # the ending of Mermaid

@@ -14,7 +14,8 @@ from grader.report.formats import GraphFormat, InspectFormat, render_graph
 from grader.report.invocation import read_arguments, read_saves
 from grader.report.shown_graph import ShownGraph
 from grader.report.writing import Terminal, Warn
-from grader.ros.api import LaunchGraph, Release, open_workspace
+from grader.ros.api import Release
+from grader.workspace.api import LaunchGraph, open_workspace
 
 _MAX_NAMED = 10
 

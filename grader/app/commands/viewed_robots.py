@@ -32,7 +32,8 @@ from grader.ros.api import Read, Unreadable
 
 if TYPE_CHECKING:
     from grader.lab.grading.report import Report
-    from grader.ros.api import MeshLoader, OpenedWorkspace, Reading
+    from grader.ros.api import MeshLoader, Reading
+    from grader.workspace.api import OpenedWorkspace
 
 _MAX_SHOWN = 5  # problems that break a robot
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from grader.app.editor.session import EditorSession, SupersededError
 from grader.base.errors import GraderError
 from grader.report.inspection import NO_FAILURE, log_line
-from grader.ros.api import LogAnswer, explain_log
+from grader.workspace.api import LogAnswer, explain_log
 
 EXPLAIN = "grader.explain"  # the command of the server
 

@@ -16,13 +16,8 @@ from grader.files.tree import Tree
 from grader.report.findings import Finding, findings_in_inspection
 from grader.report.inspection import InspectedRobot, Inspection
 from grader.report.mistakes import Mistake
-from grader.ros.api import (
-    Configuration,
-    NamePlaces,
-    OpenedWorkspace,
-    Read,
-    read_workspace,
-)
+from grader.ros.api import Configuration, Read
+from grader.workspace.api import NamePlaces, OpenedWorkspace, read_workspace
 
 
 class ProvenFix(NamedTuple):

@@ -14,7 +14,7 @@ from grader.base.source import Edit, Location
 from grader.base.text import counted
 from grader.files.tree import Tree, overlaid
 from grader.report.findings import Finding
-from grader.ros.api import WrittenName
+from grader.workspace.api import WrittenName
 
 _VALID = re.compile(r"[\w~/.-]+")
 _WITH_NAMESPACES = ("topic", "service", "action")  # of whose names the last part is renamed

@@ -45,7 +45,11 @@ def forms_of(
             forms |= {"urdf": sha256_of(urdf.data), "robot": robot_hash(urdf.reading)}
         forms["written"] = written_form(urdf.reading.elements, is_handed_out=is_handed_out)
     if any(criterion.check.name in GRAPH_CHECKS for criterion in rubric.criteria):
-        from grader.ros.api import graph_form, launch_files, launch_graph  # late: few labs ask
+        from grader.workspace.api import (  # late: few labs ask
+            graph_form,
+            launch_files,
+            launch_graph,
+        )
 
         launches = launch_files(submission.workspace) if submission.packages else []
         if launches:

@@ -35,9 +35,9 @@ from grader.lab.checks.registry import find_check
 from grader.lab.grading.subjects import without_selectors
 from grader.lab.rubric.rubric import Rubric, read_rubric
 from grader.lab.submission.submission import Submission
-from grader.ros.api import has_programs
 from grader.ros.known.releases import Release
 from grader.ros.urdf.shapes import UnknownShape
+from grader.workspace.api import has_programs
 
 _WIDTH = 120  # columns
 

@@ -11,7 +11,7 @@ from grader.base.text import texts_in
 from grader.lab.authoring.facts import Fact, Omission
 from grader.lab.checks.check import LINK_ARGUMENTS
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.workspace.rules.rule_table import FAMILIES
+from grader.workspace.rules.rule_table import FAMILIES
 
 # What --without takes besides the families of names: words for the checks of a draft.
 _KINDS: Mapping[str, tuple[str, ...]] = {

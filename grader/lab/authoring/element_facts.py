@@ -14,8 +14,6 @@ from grader.ros.package.trees import is_path, steps_of
 from grader.ros.python.budget import Budget
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
-from grader.ros.workspace.rules.controllers import needed_interfaces
-from grader.ros.workspace.rules.reading import read_agreement
 from grader.ros.xml.elements import (
     attributes_of,
     foreign_elements,
@@ -25,6 +23,8 @@ from grader.ros.xml.elements import (
     xml_text,
 )
 from grader.ros.xml.parsing import Element
+from grader.workspace.rules.controllers import needed_interfaces
+from grader.workspace.rules.reading import read_agreement
 
 _MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
 _NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?")

@@ -31,9 +31,9 @@ from grader.ros.urdf.model import (
     Visual,
 )
 from grader.ros.urdf.reader import Reading
-from grader.ros.workspace.rules.reading import read_agreement
 from grader.ros.xml.elements import words_of_foreign
 from grader.ros.xml.parsing import Element
+from grader.workspace.rules.reading import read_agreement
 
 _THE_FILE, _THE_ROBOT = "The file", "The robot"  # headings
 _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")

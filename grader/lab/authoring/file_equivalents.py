@@ -10,7 +10,7 @@ from contextlib import suppress
 from grader.lab.submission.submission import Submission
 from grader.ros.config.yaml_nodes import YamlNode, yaml_value
 from grader.ros.config.yaml_values import sections_in
-from grader.ros.workspace.model.workspace import Workspace
+from grader.workspace.model.workspace import Workspace
 
 EVERY_NODE, _FLOW_STYLE = "parameters of /**", "flow style of YAML"
 

@@ -8,9 +8,9 @@ from grader.base.quantities import point
 from grader.base.transforms import Vector
 from grader.lab.authoring.facts import Fact
 from grader.lab.submission.submission import Submission
-from grader.ros.api import GraphEnd, GraphNode, GraphTransform, join_launches
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
+from grader.workspace.api import GraphEnd, GraphNode, GraphTransform, join_launches
 
 # Types of what sensors publish, and of what moves a robot.
 _OF_SENSORS = ("sensor_msgs/msg/", "nav_msgs/msg/Odometry")

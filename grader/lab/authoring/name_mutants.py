@@ -11,10 +11,10 @@ from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt, mutant
 from grader.lab.submission.submission import Submission
 from grader.ros.config.yaml_nodes import YamlNode, yaml_root
 from grader.ros.package.package import CMAKE, MANIFEST
-from grader.ros.workspace.rules.name_fixes import NameFixes
-from grader.ros.workspace.rules.names import Fact, Use
-from grader.ros.workspace.rules.reading import compared_facts
-from grader.ros.workspace.rules.rule_table import Family
+from grader.workspace.rules.name_fixes import NameFixes
+from grader.workspace.rules.names import Fact, Use
+from grader.workspace.rules.reading import compared_facts
+from grader.workspace.rules.rule_table import Family
 
 _YAML = (".yaml", ".yml")
 _NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?")

@@ -10,7 +10,7 @@ from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import CMAKE
 from grader.ros.python.python_file import PythonFile
-from grader.ros.workspace.rules.rule_table import Family
+from grader.workspace.rules.rule_table import Family
 
 _INTERFACES = (".msg", ".srv", ".action")
 _FIELD = re.compile(r"(?m)^[\w/<=\[\]]+[ \t]+([a-z]\w*)[ \t]*(?=$|#| )")

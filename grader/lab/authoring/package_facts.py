@@ -25,22 +25,22 @@ from grader.lab.checks.parameters import measures
 from grader.lab.checks.started_nodes import LIFECYCLE_MANAGER, managed_nodes
 from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
-from grader.ros.api import (
-    looked_up_transforms,
-    opened_by_bridge,
-    parameter_callbacks,
-    spawned_by,
-    started_worlds,
-)
 from grader.ros.installation.places import PREFIX, is_of_one_machine
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
-from grader.ros.workspace.graph.code_ends import opened_by
-from grader.ros.workspace.rules.reading import read_agreement, wrong_names
-from grader.ros.workspace.rules.rule_table import FAMILIES, Family
+from grader.workspace.api import (
+    looked_up_transforms,
+    opened_by_bridge,
+    parameter_callbacks,
+    spawned_by,
+    started_worlds,
+)
+from grader.workspace.graph.code_ends import opened_by
+from grader.workspace.rules.reading import read_agreement, wrong_names
+from grader.workspace.rules.rule_table import FAMILIES, Family
 
 _THE_PACKAGE, _THE_NAMES, _THE_VALUES = "The package", "The names", "The values"  # headings
 _NAME_TITLES: Mapping[Family, str] = {

@@ -43,8 +43,8 @@ from grader.lab.submission.submission import Lab, Submission
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.link_tree import JOINT_OF
-from grader.ros.workspace.rules.names import Fact
-from grader.ros.workspace.rules.rule_table import Family
+from grader.workspace.rules.names import Fact
+from grader.workspace.rules.rule_table import Family
 
 _WORD = re.compile(r"[\w@:.-]+")
 _TEXTS = (

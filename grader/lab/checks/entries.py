@@ -125,7 +125,7 @@ def _entry_of_file(
 ) -> Outcome:
     """Return whether a file of a package has an entry; the arguments are those of entry_is."""
     if file in _USES:
-        from grader.ros.api import used_file  # late: few rubrics ask for it
+        from grader.workspace.api import used_file  # late: few rubrics ask for it
 
         package, file = used_file(submission.workspace, file)
     tree = read_tree(package, file)

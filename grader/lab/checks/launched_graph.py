@@ -21,7 +21,8 @@ from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
 
 if TYPE_CHECKING:
-    from grader.ros.api import EndpointKind, GraphEnd, GraphTransform, PlacedEnd
+    from grader.ros.api import EndpointKind
+    from grader.workspace.api import GraphEnd, GraphTransform, PlacedEnd
 
 _NAMED = {**RUNS, "topic": "no node opens a topic, service or action", "type": "a type differs"}
 ABOUT = {

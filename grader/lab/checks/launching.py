@@ -12,9 +12,9 @@ from grader.ros.package.package import Package
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from grader.ros.api import JoinedGraph
     from grader.ros.launch.launch_model import Launch, StartedNode
-    from grader.ros.workspace.model.workspace import Workspace
+    from grader.workspace.api import JoinedGraph
+    from grader.workspace.model.workspace import Workspace
 
 # The causes of failures of what is launched.
 STOPS = {"stops": "ros2 launch stops at an error in the launch file, or at a file that it reads"}
@@ -38,7 +38,7 @@ def launch_together(package: Package, submission: Submission, name: str | None) 
 
     Raises MissingElement where none of them starts anything.
     """
-    from grader.ros.api import join_launches  # late: few rubrics ask for it
+    from grader.workspace.api import join_launches  # late: few rubrics ask for it
 
     workspace = submission.workspace
     stopped: list[MissingElement] = []

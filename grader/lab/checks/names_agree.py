@@ -10,7 +10,7 @@ from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
-from grader.ros.workspace.rules.rule_table import FAMILIES, Family
+from grader.workspace.rules.rule_table import FAMILIES, Family
 
 ABOUT = {
     "names_agree": About(
@@ -57,7 +57,7 @@ def names_agree(
         not_at: Families, or "robot" for errors of the URDF and xacro: a name in a line where one of
             these is wrong as well does not count, for `carried`.
     """
-    from grader.ros.workspace.rules.reading import (  # late: few rubrics ask for it
+    from grader.workspace.rules.reading import (  # late: few rubrics ask for it
         read_agreement,
         wrong_names,
     )
@@ -95,7 +95,7 @@ def names_agree(
 
 def _wrong_lines(submission: Submission, families: Sequence[str]) -> set[tuple[str | int, ...]]:
     """Return the files and lines where names of families, or the robot, are wrong."""
-    from grader.ros.workspace.rules.reading import wrong_names  # late: as above
+    from grader.workspace.rules.reading import wrong_names  # late: as above
 
     lines: set[tuple[str | int, ...]] = set()
     for family in FAMILIES:

@@ -21,7 +21,7 @@ from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Cylinder, Joint, Sphere
 from grader.ros.urdf.visuals import placed
-from grader.ros.workspace.model.workspace import Workspace
+from grader.workspace.model.workspace import Workspace
 
 _Measure = Literal["radius", "length", "distance", "lower", "upper", "velocity", "effort"]
 _EXACT = 1e-6

@@ -13,8 +13,8 @@ from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.reader import Reading
 from grader.ros.urdf.urdf_problems import UNLISTED
-from grader.ros.workspace.rules.problem_kinds import EVERY_KIND
-from grader.ros.workspace.rules.rule_table import RULES
+from grader.workspace.rules.problem_kinds import EVERY_KIND
+from grader.workspace.rules.rule_table import RULES
 
 _OF_ROBOT = ("URDF", "XACRO")
 _OF_PACKAGES = ("PKG", "LCH", "RVZ", "REF")
@@ -93,7 +93,7 @@ def _is_asked(problem: Problem, names: Collection[str]) -> bool:
 
 def _why_open(submission: Submission, names: Sequence[str]) -> Iterator[str]:
     """Yield why problems of some codes or rules may not be known."""
-    from grader.ros.workspace.rules.reading import read_agreement  # late: few rubrics ask for it
+    from grader.workspace.rules.reading import read_agreement  # late: few rubrics ask for it
 
     undecided = read_agreement(submission.workspace).undecided
     for rule in RULES.values():

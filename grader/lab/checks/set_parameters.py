@@ -19,7 +19,7 @@ def takes_parameters(submission: Submission, *, refuses: bool = False) -> Outcom
         refuses: Whether it has to refuse values: by a callback whose result is not always
             successful, or by a range or `read_only` in the descriptor of a parameter.
     """
-    from grader.ros.api import parameter_callbacks  # late: few rubrics ask for it
+    from grader.workspace.api import parameter_callbacks  # late: few rubrics ask for it
 
     submission.needed_package()
     callbacks = parameter_callbacks(submission.workspace)

@@ -25,7 +25,7 @@ def world_has(submission: Submission, *, systems: list[str]) -> Outcome:
     Args:
         systems: The names of the classes of systems, such as "UserCommands" or "Sensors".
     """
-    from grader.ros.api import started_worlds  # late: few rubrics ask for it
+    from grader.workspace.api import started_worlds  # late: few rubrics ask for it
 
     submission.needed_package()
     workspace = submission.workspace

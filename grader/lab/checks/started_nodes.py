@@ -19,7 +19,7 @@ from grader.ros.xml.urdf_format import numbers_in
 if TYPE_CHECKING:
     from grader.lab.submission.submission import Submission
     from grader.ros.launch.launch_model import Launch, StartedNode
-    from grader.ros.workspace.model.workspace import Workspace
+    from grader.workspace.model.workspace import Workspace
 
 _VERBS: Mapping[str, str] = {
     "publisher": "publishes",
@@ -270,7 +270,7 @@ def _not_included(launch: "Launch", end: str) -> Fault | None:
 
 def stopping_mistakes(workspace: "Workspace") -> "Mapping[str, Fault]":
     """Return by file the first mistake for which its node certainly ends."""
-    from grader.ros.workspace.rules.reading import read_agreement  # late: few rubrics ask for it
+    from grader.workspace.rules.reading import read_agreement  # late: few rubrics ask for it
 
     faults: dict[str, Fault] = {}
     for mistake in read_agreement(workspace).mismatches:
@@ -295,7 +295,7 @@ def _not_spawned(launch: "Launch", controllers: Sequence[str]) -> Iterator[Fault
     """Yield the controllers that spawners do not start, in the order in which they are wanted."""
     if not controllers:
         return
-    from grader.ros.api import spawned_by  # late: as above
+    from grader.workspace.api import spawned_by  # late: as above
 
     spawned = spawned_by(launch)
     shown = enumerated([quoted(name) for name in sorted(spawned.names)]) or "none"
@@ -325,8 +325,11 @@ class _NodeTopics:
     """The topics, services and actions of own nodes and bridges that a launch file starts."""
 
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
-        from grader.ros.api import opened_by_bridge, unread_includes  # late: few rubrics ask for it
-        from grader.ros.workspace.graph.code_ends import opened_by
+        from grader.workspace.api import (  # late: few rubrics ask for it
+            opened_by_bridge,
+            unread_includes,
+        )
+        from grader.workspace.graph.code_ends import opened_by
 
         self._topics: list[_NodeTopic] = []
         self._is_open = bool(launch.unknown) or any(unread_includes(workspace, launch))

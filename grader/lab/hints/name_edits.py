@@ -15,9 +15,9 @@ from grader.lab.checks.parameters import measured, value_of
 from grader.lab.hints.edits import Proposal
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
-from grader.ros.workspace.rules.name_fixes import NameFixes
-from grader.ros.workspace.rules.reading import wrong_names
-from grader.ros.workspace.rules.rule_table import Family
+from grader.workspace.rules.name_fixes import NameFixes
+from grader.workspace.rules.reading import wrong_names
+from grader.workspace.rules.rule_table import Family
 
 _MAX_WRONG = 4  # names of which all combinations are tried
 _MAX_REMAPPINGS = 8  # of a file

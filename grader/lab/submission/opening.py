@@ -20,8 +20,8 @@ from grader.ros.package.robot_file import (
     read_as_ros,
 )
 from grader.ros.python.budget import Budget
-from grader.ros.workspace.opened import OpenedWorkspace
-from grader.ros.workspace.opening import (
+from grader.workspace.opening.opened import OpenedWorkspace
+from grader.workspace.opening.opening import (
     STANDARD_INPUT,
     first_step,
     open_file,

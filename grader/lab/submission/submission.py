@@ -23,7 +23,7 @@ from grader.ros.package.robot_file import (
 from grader.ros.python.budget import Budget
 from grader.ros.urdf.model import Robot
 from grader.ros.urdf.reader import Reading, Verdict
-from grader.ros.workspace.opened import OpenedWorkspace
+from grader.workspace.opening.opened import OpenedWorkspace
 
 if TYPE_CHECKING:
     from grader.lab.documents.collection import DocumentCollection

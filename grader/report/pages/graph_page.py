@@ -12,7 +12,7 @@ from grader.report.pages.shell import Assets, render_page
 from grader.report.pages.viewing import GRAPH_SCRIPT, SOURCES, STYLES, GraphViewing, ProblemCard
 from grader.report.shown_graph import ShownGraph, transform_tree
 from grader.report.writers.graph_diagrams import Diagram, diagram_of
-from grader.ros.api import GraphEnd, GraphNode, GraphTransform, LaunchGraph
+from grader.workspace.api import GraphEnd, GraphNode, GraphTransform, LaunchGraph
 
 _MAX_DEPTH = 20  # of a frame that is indented
 _MAX_PARAMETERS = 20

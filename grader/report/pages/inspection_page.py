@@ -25,7 +25,7 @@ from grader.report.pages.viewing import LogCard, ProblemCard, Viewing
 from grader.report.readings import problem_line
 
 if TYPE_CHECKING:
-    from grader.ros.api import LogAnswer
+    from grader.workspace.api import LogAnswer
 
 _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 

@@ -28,7 +28,7 @@ from grader.report.pages.robot_page import render_robot_page
 from grader.report.pages.shell import Assets
 from grader.report.pages.viewing import Viewing
 from grader.report.statuses import STATUS_WORDS, SYMBOLS
-from grader.ros.api import launch_files, launch_graph
+from grader.workspace.api import launch_files, launch_graph
 
 _MAX_PICTURES = 6 * 1024 * 1024  # bytes on a page
 

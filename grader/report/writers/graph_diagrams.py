@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from grader.base.text import printable
 from grader.report.shown_graph import ShownGraph, severity_of
-from grader.ros.api import GraphEnd, GraphNode
+from grader.workspace.api import GraphEnd, GraphNode
 
 _PLAIN = re.compile(r"[^A-Za-z0-9_/ .:*()-]")
 _MERMAID_SHAPES = {"topic": ("([", "])"), "service": ("{{", "}}"), "action": ("[[", "]]")}

@@ -17,7 +17,7 @@ from grader.report.json_data import (
     to_json,
 )
 from grader.report.shown_graph import ShownGraph
-from grader.ros.api import CONNECTION_KINDS, GRAPH_NODE_KINDS, GraphEnd, GraphNode
+from grader.workspace.api import CONNECTION_KINDS, GRAPH_NODE_KINDS, GraphEnd, GraphNode
 
 _YES_OR_NO = {"type": "boolean"}
 _NUMBER = {"type": "integer", "minimum": 0}

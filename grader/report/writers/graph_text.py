@@ -11,7 +11,8 @@ from grader.base.text import counted, enumerated, printable
 from grader.report.inspection import problem_counts
 from grader.report.shown_graph import ShownGraph, transform_tree
 from grader.report.writers.terminal_page import INDENT, SEVERITY_LOOKS, Page
-from grader.ros.api import Connection, EndedProcess, GraphEnd, GraphNode, GraphTransform, Qos
+from grader.ros.api import Qos
+from grader.workspace.api import Connection, EndedProcess, GraphEnd, GraphNode, GraphTransform
 
 _VERBS = {
     "publisher": "publishes",

@@ -15,7 +15,7 @@ from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box
 from grader.ros.urdf.reader import read_urdf
-from grader.ros.workspace.opening import open_workspace
+from grader.workspace.opening.opening import open_workspace
 from tests.command_line import run
 from tests.mesh.mesh_files import CUBE, binary_stl, collada
 

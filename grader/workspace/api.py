@@ -1,0 +1,89 @@
+"""The public API of `workspace`: what packages, launch files, nodes and robots are together.
+
+**Open.** `open_workspace` opens what is at a path, `read_workspace` a file tree. Nothing is run or
+imported. Only a path without anything that can be read raises InputError.
+
+**Ask.** An `OpenedWorkspace` has robots, packages, launch files and problems. `launch_graph` says
+what runs after a launch: a `LaunchGraph` of nodes, topics, services, actions and transforms, each
+with its place and certainty. A `Problem` has its code, the name of its `Rule`, its message, its
+place (path, line and column from 1), and fixes, which are computed when they are iterated over.
+
+A name is imported with its module when it is first asked for. All other names may move at any time.
+"""
+# ruff: noqa: PLC0414  mypy takes a name that is imported `as` itself for one of this module
+
+from typing import TYPE_CHECKING
+
+from grader.base.late_names import late_names
+
+if TYPE_CHECKING:
+    from grader.workspace.graph.graph_form import graph_form as graph_form
+    from grader.workspace.graph.joined_graph import JoinedGraph as JoinedGraph
+    from grader.workspace.graph.joined_graph import PlacedEnd as PlacedEnd
+    from grader.workspace.graph.joined_graph import join_launches as join_launches
+    from grader.workspace.graph.launch_graph import CONNECTION_KINDS as CONNECTION_KINDS
+    from grader.workspace.graph.launch_graph import GRAPH_NODE_KINDS as GRAPH_NODE_KINDS
+    from grader.workspace.graph.launch_graph import Connection as Connection
+    from grader.workspace.graph.launch_graph import EndedProcess as EndedProcess
+    from grader.workspace.graph.launch_graph import GivenValue as GivenValue
+    from grader.workspace.graph.launch_graph import GraphEnd as GraphEnd
+    from grader.workspace.graph.launch_graph import GraphNode as GraphNode
+    from grader.workspace.graph.launch_graph import GraphTransform as GraphTransform
+    from grader.workspace.graph.launch_graph import LaunchGraph as LaunchGraph
+    from grader.workspace.graph.launch_graph import Unread as Unread
+    from grader.workspace.graph.launch_graph import connections_in as connections_in
+    from grader.workspace.graph.launch_graph import unconnected_ends as unconnected_ends
+    from grader.workspace.graph.launch_graphs import launch_files as launch_files
+    from grader.workspace.graph.launch_graphs import launch_graph as launch_graph
+    from grader.workspace.graph.lookups import looked_up_transforms as looked_up_transforms
+    from grader.workspace.graph.manual_ends import manual_ends as manual_ends
+    from grader.workspace.graph.node_ends import opened_by_bridge as opened_by_bridge
+    from grader.workspace.graph.started_controllers import spawned_by as spawned_by
+    from grader.workspace.graph.started_graph import unread_includes as unread_includes
+    from grader.workspace.graph.started_worlds import has_programs as has_programs
+    from grader.workspace.graph.started_worlds import started_worlds as started_worlds
+    from grader.workspace.graph.used_files import used_file as used_file
+    from grader.workspace.index.name_places import NamePlaces as NamePlaces
+    from grader.workspace.index.written_names import WrittenName as WrittenName
+    from grader.workspace.log.explaining import LogAnswer as LogAnswer
+    from grader.workspace.log.explaining import explain_log as explain_log
+    from grader.workspace.log.log_messages import MAX_LOG as MAX_LOG
+    from grader.workspace.model.parameter_callbacks import (
+        parameter_callbacks as parameter_callbacks,
+    )
+    from grader.workspace.opening.all_robots import read_workspace as read_workspace
+    from grader.workspace.opening.extent import Extent as Extent
+    from grader.workspace.opening.opened import OpenedWorkspace as OpenedWorkspace
+    from grader.workspace.opening.opening import STANDARD_INPUT as STANDARD_INPUT
+    from grader.workspace.opening.opening import open_workspace as open_workspace
+    from grader.workspace.rules.problem_kinds import EVERY_KIND as EVERY_KIND
+    from grader.workspace.rules.rule_table import RULES as RULES
+    from grader.workspace.rules.rule_table import Rule as Rule
+else:
+    _NAMES = {
+        "graph.graph_form": "graph_form",
+        "graph.joined_graph": "JoinedGraph PlacedEnd join_launches",
+        "graph.launch_graph": "CONNECTION_KINDS GRAPH_NODE_KINDS Connection EndedProcess "
+        "GivenValue GraphEnd GraphNode GraphTransform LaunchGraph "
+        "Unread connections_in unconnected_ends",
+        "graph.launch_graphs": "launch_files launch_graph",
+        "graph.lookups": "looked_up_transforms",
+        "graph.manual_ends": "manual_ends",
+        "graph.node_ends": "opened_by_bridge",
+        "graph.started_controllers": "spawned_by",
+        "graph.started_graph": "unread_includes",
+        "graph.started_worlds": "has_programs started_worlds",
+        "graph.used_files": "used_file",
+        "index.name_places": "NamePlaces",
+        "index.written_names": "WrittenName",
+        "log.explaining": "LogAnswer explain_log",
+        "log.log_messages": "MAX_LOG",
+        "model.parameter_callbacks": "parameter_callbacks",
+        "opening.all_robots": "read_workspace",
+        "opening.extent": "Extent",
+        "opening.opened": "OpenedWorkspace",
+        "opening.opening": "STANDARD_INPUT open_workspace",
+        "rules.problem_kinds": "EVERY_KIND",
+        "rules.rule_table": "RULES Rule",
+    }
+    __getattr__ = late_names(__name__, _NAMES)

@@ -1,0 +1,187 @@
+"""The transforms that are published after a launch file is launched, also by own code.
+
+A node of own code is read with what it gives to a broadcaster, so that each frame has its parent.
+"""
+
+from collections.abc import Collection, Iterator
+
+from grader.ros.known.end_rows import opened_ends
+from grader.ros.known.package_rows import package_row, transforms_of
+from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.package.static_transforms import STATIC_PUBLISHER
+from grader.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
+from grader.workspace.graph.code_ends import transforms_sent
+from grader.workspace.graph.gazebo_topics import roots, system_of
+from grader.workspace.graph.launch_graph import (
+    GraphNode,
+    GraphTransform,
+    LaunchGraph,
+    Unread,
+)
+from grader.workspace.graph.transform_edges import (
+    edges_in,
+    frames_of_system,
+    publishes_as_named,
+)
+from grader.workspace.model.own_code import CPP_ENDINGS
+from grader.workspace.model.workspace import Workspace
+
+_TF = "/tf"
+_SENDING = ("sendTransform", "TFMessage")
+_SIMULATORS = ("gazebo_ros", "gazebo_plugins")  # whose plug-ins publish what their elements say
+_PUBLISHING = ("tf2_ros", "robot_state_publisher")  # also as components
+_PROGRAM_ENDINGS = (".py", *CPP_ENDINGS)
+
+
+def transforms_in(
+    workspace: Workspace, number: int, without: Collection[str] = ()
+) -> Iterator[GraphTransform]:
+    """Yield the transforms of a launch file; a frame that is not known is empty.
+
+    `number` is that of the launch file among the roots; `without` has the names of programs that
+    cannot run. Raises NotDecided.
+    """
+    _, launch = workspace.launches.roots[number]
+    not_started = {node.location for node in launch.nodes if node.when is False}
+    for edge in edges_in(workspace, number):
+        if edge.source != "code" and edge.location not in not_started:
+            yield GraphTransform(
+                edge.parent,
+                edge.child,
+                edge.by,
+                edge.location,
+                edge.is_static,
+                edge.is_certain,
+                edge.pose,
+                edge.needs,
+            )
+    for node in _launched_nodes(launch, without):
+        yield from _bridged_by_default(workspace, node)
+        for facts in workspace.code.nodes_of(node):
+            for parent, child, sent in transforms_sent(workspace, node, facts):
+                is_certain = publishes_as_named(node) and not sent.is_conditional
+                is_certain = is_certain and bool(parent and child)
+                yield GraphTransform(
+                    parent,
+                    child,
+                    node.executable,
+                    sent.location,
+                    sent.is_static,
+                    is_certain,
+                    sent.pose,
+                )
+
+
+def _bridged_by_default(workspace: Workspace, node: StartedNode) -> Iterator[GraphTransform]:
+    """Yield the transforms of systems of Gazebo on their default topic that a bridge publishes.
+
+    It is /model/NAME/tf, with the name of the model, which is that of the robot by default.
+    """
+    topics = _topics_of_transforms(workspace, node)
+    for root, place in roots(workspace) if topics else ():
+        for plugin in root.iter("plugin"):
+            frames = frames_of_system(plugin) if plugin.find("tf_topic") is None else None
+            if frames is not None:
+                by = f"the system {system_of(plugin)} of Gazebo"
+                is_certain = f"model/{root.get('name')}/tf" in topics and node.when is True
+                yield GraphTransform(*frames, by, place(plugin), is_certain=is_certain)
+
+
+def _topics_of_transforms(workspace: Workspace, node: StartedNode) -> set[str]:
+    """Return the topics of Gazebo whose transforms a bridge publishes, without their slash."""
+    if node.package != BRIDGE:
+        return set()
+    rows = rows_of_bridge(workspace, node)
+    return {row.gz for row in rows if row.is_published and node.topic(f"/{row.ros}") == _TF}
+
+
+def _launched_nodes(launch: Launch, without: Collection[str]) -> list[StartedNode]:
+    """Return the programs and components that a launch file starts or may start."""
+    nodes = [node for node in launch.nodes if node.when is not False]
+    for component in launch.components:
+        if component.node is not None and component.when is not False:
+            nodes.append(component.node)
+    return [node for node in nodes if node.name not in without]
+
+
+def is_for_transforms(workspace: Workspace, node: StartedNode) -> bool:
+    """Return whether a program is known to publish transforms, or does nothing else."""
+    program = (node.package, node.executable)
+    if program == STATIC_PUBLISHER or transforms_of("/".join(program)):
+        return True
+    own_nodes = workspace.code.nodes_of(node)
+    return bool(own_nodes) and not any(facts.endpoints for facts in own_nodes)
+
+
+def unread_transforms(
+    workspace: Workspace, number: int, graph: LaunchGraph, without: Collection[str] = ()
+) -> Iterator[Unread]:
+    """Yield what may publish transforms that are not known, and where it is started.
+
+    `graph` is that of the launch file, without programs that cannot run.
+    """
+    _, launch = workspace.launches.roots[number]
+    yield from graph.unread
+    for transform in transforms_in(workspace, number, without):
+        if not (transform.parent and transform.child):
+            yield Unread(f"a frame of {transform.by} is not known", transform.location)
+    own_programs = set()
+    read_at = {node.location for node in launch.nodes}  # others are included, or components
+    for node in _launched_nodes(launch, without):
+        reason = ""
+        if workspace.package_of(node) is not None:
+            own_programs.add(node.name)
+            reason = _why_own_is_unread(workspace, node)
+        elif _topics_of_transforms(workspace, node):
+            reason = "the transforms of Gazebo are not read"
+        if reason:
+            yield Unread(reason, node.location)
+    for graph_node in graph.nodes:
+        is_own = graph_node.program in own_programs or graph_node.kind == "container"
+        is_read = graph_node.location in read_at
+        if not is_own and (
+            _may_publish_others(graph_node) or not (is_read or _is_still(graph_node))
+        ):
+            reason = f"which transforms {graph_node.program} publishes is not known"
+            yield Unread(reason, graph_node.location)
+
+
+def _why_own_is_unread(workspace: Workspace, node: StartedNode) -> str:
+    """Return why own code may publish transforms that are not known; empty if it may not."""
+    own_nodes = workspace.code.nodes_of(node)
+    if not own_nodes:
+        return f"the code of {node.executable} is not read"
+    for facts in own_nodes:
+        if facts.doubts:
+            return facts.doubts[0].reason
+    package = workspace.package_of(node)
+    assert package is not None  # that has the code
+    code = workspace.code.by_package[package.name]
+    read = {sent.location.path for facts in code.nodes for sent in facts.transforms}
+    for source in workspace.texts.sources_of(package, _PROGRAM_ENDINGS):
+        if source.path not in read and any(word in source.text for word in _SENDING):
+            return f"what {source.path} publishes is not known"
+    return ""
+
+
+def _is_still(node: GraphNode) -> bool:
+    """Return whether a node that no Node of the launch file starts publishes no transform."""
+    package, _, program = node.program.rpartition("/")
+    row = package_row(package or program)
+    if node.kind == "component":
+        programs = row.program.values()
+        publishes = package in _PUBLISHING or any(each.transforms for each in programs)
+    else:
+        publishes = bool(transforms_of(node.program))
+    return node.kind == "controller" or ("frames" in row.without and not publishes)
+
+
+def _may_publish_others(node: GraphNode) -> bool:
+    """Return whether a node of another package may publish transforms that are not known."""
+    package, _, program = node.program.rpartition("/")
+    package = package or program
+    if package in _SIMULATORS:
+        return True
+    if node.kind == "controller":
+        return bool(node.opens_more)
+    return "frames" not in package_row(package).without and opened_ends(package, program) is None

@@ -1,0 +1,315 @@
+"""Nodes that need others, such as a publisher of joint states, the clock or the robot.
+
+Nodes that have one name are compared here as well.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.installation.places import PREFIX, share_parts
+from grader.ros.known.package_rows import (
+    commands_that_end,
+    controller_row,
+    package_row,
+    program_row,
+)
+from grader.ros.known.ros_machine import ros_machine
+from grader.ros.known.shared_names import shared_names
+from grader.ros.launch.launch_model import Launch, PassedArguments, StartedNode
+from grader.ros.urdf.model import Joint
+from grader.workspace.graph.bridge_rows import BRIDGE, are_rows_known, bridge_rows
+from grader.workspace.graph.graph import graph_of
+from grader.workspace.graph.running_nodes import RunningNode
+from grader.workspace.graph.started_controllers import defined_controllers, spawned_controllers
+from grader.workspace.graph.unread_ends import may_publish_type
+from grader.workspace.model.launches import CONTROL_NODE, MANAGER
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.rule_table import (
+    CLOCK_PUBLISHED,
+    JOINT_STATES,
+    NODE_NAME,
+    ONE_JOINT_STATE,
+    ROBOT_PUBLISHED,
+    SIMULATION_TIME,
+)
+
+_ROBOT_PUBLISHER = "robot_state_publisher"
+_JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"
+_JOINT_STATE_WORDS = ("joint_state", "JointState")
+_TIME = "use_sim_time"
+_CODE, _PAGES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h"), (".md", ".sh", ".bash", "Makefile")
+_LOOSE = (*_PAGES, ".rst", ".txt", ".yaml", ".yml", "Dockerfile")  # outside of packages
+_SOURCES = (*_CODE, *_PAGES, ".yaml")
+# Launch files that start Gazebo or a part of it, and no bridge.
+_OF_GAZEBO = ("gz_sim.launch.py", "gz_server.launch.py", "gz_spawn_model.launch.py")
+_BRIDGES = (BRIDGE, "ros_ign_bridge")
+_WORD = re.compile(r"[a-z0-9]+")
+
+
+def companion_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield nodes whose companions are missing or are there twice.
+
+    A launch file may be one of several that a person starts: what is missing is missing in all of
+    them. Where a launch file may start more than is known, nothing is.
+    """
+    if not workspace.launches.nodes:
+        return
+    yield Compared("wiring")
+    yield from _same_names(workspace)
+    yield from _two_joint_state_publishers(workspace)
+    if not workspace.launches.unknown_nodes:
+        yield from _no_joint_states(workspace)
+        yield from _no_robot(workspace)
+        yield from _no_clock(workspace)
+        yield from _wall_time(workspace)
+
+
+def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the nodes that a launch file gives a name which it gives another one."""
+    first: dict[tuple[int, str], RunningNode] = {}
+    for node in graph_of(workspace).nodes:
+        process = node.process if node.kind == "program" else None
+        if process is None or not process.node_name or node.when is not True or not node.name:
+            continue
+        before = first.setdefault((node.launch, node.name), node)
+        if before.process is not process:
+            message = (
+                f"two nodes are named {node.name}: their parameters and services cannot be told "
+                f"apart; the other one is at {before.location.file_and_line}"
+            )
+            yield warning(NODE_NAME, message, node.location, before.location)
+
+
+def _broadcasters(workspace: Workspace) -> set[str]:
+    """Return the names of the controllers that publish joint states."""
+    names = set()
+    for controller in defined_controllers(workspace):
+        if controller_row(controller.type.text).publishes_joint_states:
+            names.add(controller.name)
+    return names
+
+
+def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the programs that publish joint states beside a controller that does."""
+    broadcasters = _broadcasters(workspace)
+    for launch, node in workspace.launches.launched:
+        is_source = program_row(node.package, node.executable).publishes_joint_states
+        if not is_source or node.when is not True or node.remaps or node.parameters:
+            continue
+        spawned = spawned_controllers(workspace, launch)
+        for name in sorted(broadcasters.intersection(spawned)):
+            if not spawned[name] and not node.namespace:
+                message = (
+                    f"{node.executable} and the controller {quoted(name)} both publish "
+                    "joint_states: the joints jump between their positions"
+                )
+                yield warning(ONE_JOINT_STATE, message, node.location)
+
+
+def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield a robot with moving joints whose positions nothing publishes.
+
+    Joints that follow others have no positions of their own. Nothing is said where there may be
+    other robots, or where a node, a bridge, a controller or a plugin of Gazebo may publish them, or
+    a page says what does.
+    """
+    publishers = []
+    for _, node in workspace.launches.nodes:
+        if node.executable == _ROBOT_PUBLISHER and node.when:
+            publishers.append(node)
+    moving = _moving_joints(workspace)
+    if not publishers or not moving or workspace.robots.may_be_others:
+        return
+    if may_publish_joint_states(workspace):
+        return
+    first = moving[0]
+    message = (
+        f"nothing publishes joint_states, so the links of {len(moving)} moving joints such as "
+        f"{quoted(first.name)} have no transform: start joint_state_publisher or a "
+        "joint_state_broadcaster"
+    )
+    at = first.location.resolve() if first.location is not None else None
+    yield warning(JOINT_STATES, message, publishers[0].location, at)
+
+
+def _moving_joints(workspace: Workspace) -> list[Joint]:
+    """Return the joints of the robots that have positions of their own."""
+    moving: list[Joint] = []
+    for robot in workspace.robots.known:
+        for joint in robot.robot.joints:
+            if joint.has_position and joint.mimic is None:
+                moving.append(joint)
+    return moving
+
+
+def may_publish_joint_states(workspace: Workspace) -> bool:
+    """Return whether something may publish the positions of the joints."""
+    for _, node in workspace.launches.nodes:
+        if program_row(node.package, node.executable).publishes_joint_states:
+            return True
+        if may_publish_type(workspace, node, _JOINT_STATE):
+            return True
+    if _is_bridged(workspace, _JOINT_STATE) or _broadcasters(workspace):
+        return True
+    texts = [robot.source.text for robot in workspace.robots.known]  # of plugins of Gazebo
+    is_in_robot = any(word in text for text in texts for word in _JOINT_STATE_WORDS)
+    return is_in_robot or _is_mentioned(workspace, _JOINT_STATE_WORDS)
+
+
+def _is_bridged(workspace: Workspace, message: str) -> bool:
+    """Return whether a bridge publishes messages of a type."""
+    return any(row.is_published and row.ros_type == message for row in bridge_rows(workspace))
+
+
+def _is_mentioned(workspace: Workspace, words: Sequence[str]) -> bool:
+    """Return whether a launch file, a program or a page of the workspace has one of some words."""
+    texts = [*workspace.texts.searched_launch_texts()]
+    for package in workspace.packages:
+        texts += [source.text for source in workspace.texts.sources_of(package, _SOURCES)]
+    return any(word in text for text in texts for word in words)
+
+
+def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield a controller manager that waits for a robot which nothing publishes."""
+    managers = []
+    for _, node in workspace.launches.nodes:
+        if node.executable == _ROBOT_PUBLISHER:
+            return
+        if node.package == MANAGER and node.executable == CONTROL_NODE:
+            if node.has_description:
+                return
+            managers.append(node)
+        elif "frames" not in package_row(node.package).without:
+            return
+    if managers and not _is_mentioned(workspace, ("robot_description",)):
+        message = (
+            "the controller manager waits for the topic robot_description, which nothing "
+            "publishes: start robot_state_publisher"
+        )
+        yield warning(ROBOT_PUBLISHED, message, managers[0].location)
+
+
+def _sim_time(workspace: Workspace) -> Iterator[Location]:
+    """Yield where nodes that are started are told to use the time of a simulation."""
+    for node, value in graph_of(workspace).given(_TIME):
+        if node.when is True and value.value is True:
+            yield value.location
+
+
+def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that nodes wait for the time of a simulation that nothing publishes."""
+    at = next(_sim_time(workspace), None)
+    if at is None or _may_have_clock(workspace):
+        return
+    message = "use_sim_time is true, but nothing publishes /clock: the time of the node stays 0"
+    yield warning(CLOCK_PUBLISHED, message, at)
+
+
+def _may_have_clock(workspace: Workspace) -> bool:
+    """Return whether something may publish /clock.
+
+    It may be a node, a launch file or a command that is not read, or what a page tells people to
+    start.
+    """
+    if _is_bridged(workspace, _CLOCK):
+        return True
+    if any(_may_start_clock(workspace, launch) for _, launch in workspace.launches.roots):
+        return True
+    for _, node in workspace.launches.nodes:
+        is_open_bridge = node.package == BRIDGE and None in (node.arguments or (None,))
+        if is_open_bridge or _may_be_clock(workspace, node):
+            return True
+    return _may_bridge_clock(workspace) if _starts_gazebo(workspace) else _is_told(workspace)
+
+
+def _starts_gazebo(workspace: Workspace) -> bool:
+    """Return whether a launch file starts Gazebo by a file that starts nothing else."""
+    return any(
+        _is_of_gazebo(passed) for _, launch in workspace.launches.roots for passed in launch.passed
+    )
+
+
+def _is_of_gazebo(passed: PassedArguments) -> bool:
+    """Return whether a launch file that is included starts Gazebo, or a robot in it, alone."""
+    package, file = share_parts(f"{PREFIX}/{passed.path}")
+    is_alone = package == "ros_gz_sim" and file.removeprefix("launch/") in _OF_GAZEBO
+    return is_alone and passed.when is not False
+
+
+def _may_bridge_clock(workspace: Workspace) -> bool:
+    """Return whether a bridge that is not read, or a person, may take the clock from Gazebo."""
+    if _is_mentioned(workspace, ("/clock", _CLOCK.partition(".")[0])):
+        return True
+    if any("/clock" in text for text in workspace.texts.loose_texts(_LOOSE)):
+        return True
+    bridges = [node for _, node in workspace.launches.nodes if node.package in _BRIDGES]
+    if not bridges:
+        return any(bridge in text for text in workspace.texts.launch_texts for bridge in _BRIDGES)
+    return not all(are_rows_known(workspace, node) for node in bridges)
+
+
+def _may_start_clock(workspace: Workspace, launch: Launch) -> bool:
+    """Return whether a command or an included launch file may start a simulation."""
+    ending = (*ros_machine().ending_commands, *commands_that_end())
+    if not all(command.startswith(ending) for command in launch.commands):
+        return True
+    for passed in launch.passed:
+        package = share_parts(f"{PREFIX}/{passed.path}")[0]
+        is_own = workspace.installed.source_of(passed.path) is not None
+        if not (is_own or _is_of_gazebo(passed) or package_row(package).launches_no_clock):
+            return True
+    return False
+
+
+def _may_be_clock(workspace: Workspace, node: StartedNode) -> bool:
+    """Return whether a node may publish /clock: own code, or a program whose name says so."""
+    package = workspace.package_of(node)
+    if package is not None:
+        code = workspace.code.by_package.get(package.name)
+        if code is not None and not code.doubts:
+            programs = {program.name for program in code.programs}
+            if node.executable not in programs:
+                return False  # there is none, which another rule says
+        return may_publish_type(workspace, node, _CLOCK)
+    is_open = "frames" not in package_row(node.package).without
+    return is_open and _says_clock(f"{node.package} {node.executable}")
+
+
+def _says_clock(text: str) -> bool:
+    """Return whether a name or a page has a word of simulations or of players."""
+    return not set(_WORD.findall(text.lower())).isdisjoint(shared_names().clock_words)
+
+
+def _is_told(workspace: Workspace) -> bool:
+    """Return whether the workspace says how to start a simulation, or uses the time.
+
+    A page or a script says it, or a program that is not started uses the type of the time.
+    """
+    if any(map(_says_clock, workspace.texts.loose_texts(_LOOSE))):
+        return True
+    for package in workspace.packages:
+        for source in workspace.texts.sources_of(package, _PAGES):
+            if _says_clock(source.text):
+                return True
+        for source in workspace.texts.sources_of(package, _CODE):
+            if _CLOCK.partition(".")[0] in source.text:
+                return True
+    return False
+
+
+def _wall_time(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that nodes compare times in a simulation whose clock they do not use."""
+    rows = [row for row in bridge_rows(workspace) if row.is_published and row.ros_type == _CLOCK]
+    if not rows or _is_mentioned(workspace, (_TIME,)):
+        return
+    for _, node in workspace.launches.nodes:
+        if package_row(node.package).compares_time and node.when is True:
+            message = (
+                f"{node.executable} uses the time of the machine, but the simulation has its own "
+                f"clock ({rows[0].location.file_and_line}): give the nodes use_sim_time"
+            )
+            yield warning(SIMULATION_TIME, message, node.location, rows[0].location)
+            return

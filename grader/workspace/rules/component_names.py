@@ -1,0 +1,151 @@
+"""Components that launch files load: whether their packages register them.
+
+It is compared as well whether something starts their containers.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+
+from grader.base.names import closest, near
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.installation.installation import Installation
+from grader.ros.launch.launch_model import Launch, LoadedComponent
+from grader.ros.package.package import Package
+from grader.workspace.graph.graph import graph_of
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import (
+    Compared,
+    Fact,
+    Mismatch,
+    Undecided,
+    corrections,
+    cost_of_guess,
+    warning,
+)
+from grader.workspace.rules.rule_table import (
+    COMPONENT_REGISTERED,
+    CONTAINER_STARTED,
+)
+
+_CONTAINERS = "rclcpp_components"
+_CMAKE = ("CMakeLists.txt", ".cmake")
+# A class that CMake computes.
+_COMPUTED = re.compile(r"rclcpp_components_register_nodes?\s*\(\s*+[^\s()][^()$]*+\$")
+_OTHER_WAY = "ament_index_register_resource"
+
+
+def component_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield components that nothing registers, and containers that nothing starts."""
+    for package, component in graph_of(workspace).components():
+        yield from _unregistered(workspace, package, component)
+    for _, launch in workspace.launches.roots:
+        yield from _no_container(workspace, launch)
+
+
+def _unregistered(
+    workspace: Workspace, package: Package, component: LoadedComponent
+) -> Iterator[Fact]:
+    """Yield that a package of the workspace does not have the class that a container loads.
+
+    It is certain where all is known that the package registers. Otherwise it is said only if there
+    is a class with a similar name. A class that a file of CMake names may be registered there.
+    """
+    plugin = component.plugin
+    owner = package.find(component.package) if component.package is not None else None
+    if owner is None or plugin is None or not workspace.folder.means_one(package, owner.name):
+        return
+    setup = owner.installation
+    if setup is None or setup.fault is not None:
+        return
+    yield Compared("programs")
+    registered = _registered_in(setup)
+    texts = [source.text for source in workspace.texts.sources_of(owner, _CMAKE)]
+    if plugin in registered or any(plugin in text for text in texts):
+        return
+    workspace.charge(cost_of_guess(len(registered)))
+    is_open = bool(setup.unknown or setup.unread) or any(map(_may_register, texts))
+    yield _no_component(owner.name, plugin, component.location, registered, is_open=is_open)
+
+
+def _no_component(
+    package: str, plugin: str, at: Location, registered: Mapping[str, Location], *, is_open: bool
+) -> Fact:
+    """Return that a package registers no component of a name, as far as it is known which."""
+    meant = near(plugin, registered) or closest(plugin, registered)
+    message = f"the package {package!r} registers no component {quoted(plugin)}"
+    if meant is not None:
+        related = registered[meant]
+        message = f"{message}; did you mean {quoted(meant)} ({related.file_and_line})?"
+        either = corrections(plugin, at, meant, related)
+        return Mismatch(COMPONENT_REGISTERED, message, at, related, not is_open, either)
+    if is_open:
+        return Undecided("programs", f"which components {package} has is not evaluated")
+    message = f"{message}; it registers {', '.join(registered) or 'none'}"
+    return Mismatch(COMPONENT_REGISTERED, message, at)
+
+
+def _registered_in(setup: Installation) -> Mapping[str, Location]:
+    """Return the components that a package registers, with their places."""
+    registered: dict[str, Location] = {}
+    for target in setup.targets:
+        for component in target.components:
+            registered[component.plugin] = setup.location(component.at)
+    return registered
+
+
+def _may_register(text: str) -> bool:
+    """Return whether a file of CMake may register components whose classes are not read."""
+    return _COMPUTED.search(text) is not None or _OTHER_WAY in text
+
+
+def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
+    """Yield the containers that a launch file asks for and does not start, though it starts others.
+
+    What may start more leaves open which there are.
+    """
+    started = _containers(workspace, launch) if launch.components else None
+    if not started:
+        return
+    for component in launch.components:
+        name = component.container
+        if name and component.when is True and name not in started:
+            workspace.charge(cost_of_guess(len(started)))
+            meant = closest(name, started) or min(started)
+            at = started[meant]
+            message = (
+                f"nothing starts a container {name}, for which launch waits without end; "
+                f"{meant} is started at {at.file_and_line}"
+            )
+            yield warning(CONTAINER_STARTED, message, component.loaded_at, at)
+
+
+def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | None:
+    """Return the nodes of a launch file that may be containers, by their full names.
+
+    The result is None where not all of them are known, or none is a container.
+    """
+    containers: dict[str, Location] = {}
+    for container in launch.containers:
+        if container.name is None:
+            return None
+        containers[container.name] = container.location
+    if not containers or _may_start_others(workspace, launch):
+        return None
+    for node in launch.nodes:
+        is_named = node.node_name and node.namespace is not None
+        may_be = node.package == _CONTAINERS or workspace.package_of(node) is not None
+        if may_be and not is_named:
+            return None
+        if node.node_name:
+            containers[node.full_name(node.node_name)] = node.location
+    return containers
+
+
+def _may_start_others(workspace: Workspace, launch: Launch) -> bool:
+    """Return whether a launch file may start containers that are not known."""
+    places = {container.location for container in launch.containers}
+    places |= {component.loaded_at for component in launch.components}
+    if any(unknown.location not in places for unknown in launch.unknown):
+        return True
+    return not all(workspace.installed.has_file(passed.path) for passed in launch.passed)

@@ -1,0 +1,356 @@
+"""Controllers of ros2_control: their YAML, actions, topics and interfaces of joints."""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from grader.base.names import closest, near
+from grader.base.source import Location
+from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.config.yaml_values import PARAMETERS, is_misspelt_key
+from grader.ros.known.package_rows import (
+    controller_actions,
+    controller_row,
+    controller_types,
+    is_known_controller,
+)
+from grader.ros.known.releases import releases_with
+from grader.workspace.graph.compared_robots import robots_for_file
+from grader.workspace.graph.started_controllers import (
+    Controller,
+    defined_controllers,
+    named_sections,
+    parameters_of_controllers,
+)
+from grader.workspace.model.known_robots import (
+    KnownRobot,
+    command_interfaces,
+    state_interfaces,
+)
+from grader.workspace.model.launches import CONTROL_NODE, MANAGER
+from grader.workspace.model.under_arguments import may_be_offered
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import (
+    Correction,
+    Definition,
+    Fact,
+    Mismatch,
+    Use,
+    corrections,
+)
+from grader.workspace.rules.rule_table import (
+    CLAIMED_ONCE,
+    CONTROLLER_HARDWARE,
+    CONTROLLER_INTERFACE,
+    CONTROLLER_LIST,
+    CONTROLLER_PARAMETERS,
+    CONTROLLER_TYPE,
+)
+
+_LIKENESS = 0.85  # of a type to one of another package
+_MAX_KEYS = 2  # of joints; steering controllers have those of an older release as well
+
+
+def controller_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers, types, sections and interfaces in YAML files, and those of actions."""
+    controllers = list(defined_controllers(workspace))
+    if not controllers:
+        return
+    for controller in controllers:
+        yield Definition("controller", controller.name, controller.location)
+    # In other parameters, a section replaces the type before it: that it is there is a mistake of
+    # parameters.
+    for keys, node in named_sections(workspace):
+        if MANAGER in keys[:-1]:
+            yield Definition("controller", keys[-1], node.location)
+    sections = parameters_of_controllers(workspace)
+    for controller in controllers:
+        yield from _other_type(workspace, controller)
+        section = sections.get(controller.name)
+        if section is None:
+            yield from _no_parameters(workspace, controller, sections)
+        else:
+            yield from _no_list(controller, section)
+            yield from _no_interface(workspace, controller, section)
+            yield from _no_state(workspace, controller, _beside(workspace, controller, section))
+            yield from _claimed_twice(controller, section)
+    yield from _action_facts(workspace)
+    yield from _no_hardware(workspace)
+
+
+def _no_hardware(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that a controller manager is started, while no robot has <ros2_control>.
+
+    Nothing is said where a robot may have more than is read.
+    """
+    robots = workspace.robots
+    if any(robot.systems for robot in robots.known) or not robots.has_all_interfaces:
+        return
+    for _, node in workspace.launches.nodes:
+        if node.executable == CONTROL_NODE:
+            message = "the controller manager is started, but the robot has no <ros2_control>"
+            yield Mismatch(CONTROLLER_HARDWARE, message, node.location)
+            return
+
+
+def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismatch]:
+    """Yield that no package has a class of the controller's type.
+
+    It is certain where all classes of the package are known, or the same class is in a package with
+    a similar name. Nothing is said of types that a release, a plugin in the workspace or a package
+    of it may have, and of other packages only if there is a similar type.
+    """
+    written, types = controller.type.text or "", controller_types()
+    package, _, class_name = written.partition("/")
+    is_known = any(kind.startswith(f"{package}/") for kind in types)
+    if _may_have_type(workspace, written, is_known=is_known):
+        return
+    same_class = [kind for kind in types if kind.partition("/")[2] == class_name]
+    meant = _meant_type(written, same_class, is_known=is_known)
+    if meant is None and not is_known:
+        return
+    guess = f"; did you mean {meant!r}?" if meant is not None else ""
+    message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
+    is_certain = is_known or near(written, same_class) is not None
+    at = controller.type.location
+    either = corrections(written, at, meant)
+    yield Mismatch(CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
+
+
+def _meant_type(written: str, same_class: Sequence[str], *, is_known: bool) -> str | None:
+    """Return the type that is meant: of the same class in another package, or a similar one."""
+    similar = closest(written, same_class)
+    if similar is not None:
+        return similar
+    if len(same_class) == 1:
+        return same_class[0]
+    if is_known:
+        return closest(written, controller_types())
+    return closest(written, controller_types(), likeness=_LIKENESS)
+
+
+def _may_have_type(workspace: Workspace, written: str, *, is_known: bool) -> bool:
+    """Return whether something has, or may have, a controller of a type.
+
+    `is_known` says whether all types of its package are known.
+    """
+    if is_known_controller(written) or releases_with("controller", written):
+        return True
+    package = written.partition("/")[0]
+    is_of_workspace = any(each.name == package for each in workspace.packages)
+    if is_of_workspace or workspace.texts.has_plugin(written):
+        return True
+    if is_known or not any(each.depends_on(package) for each in workspace.packages):
+        return False
+    return near(package, [kind.partition("/")[0] for kind in controller_types()]) is None
+
+
+def _no_parameters(
+    workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]
+) -> Iterator[Mismatch]:
+    """Yield that a controller that needs joints has no parameters.
+
+    It has neither a section of its name, nor one of all nodes, nor a file of its own.
+    """
+    needs_joints = bool(controller_row(controller.type.text).joints)
+    if needs_joints and "**" not in sections and not controller.has_file:
+        message = (
+            f"the controller {controller.name!r} has no parameters: there is no key "
+            f"{controller.name} with ros__parameters"
+        )
+        either = _section_corrections(workspace, controller, sections)
+        yield Mismatch(CONTROLLER_PARAMETERS, message, controller.location, corrections=either)
+
+
+def _no_list(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
+    """Yield the parameters of a controller that are lists of joints, and are given a string."""
+    for key in controller_row(controller.type.text).joints:
+        given = section.get(key) if key.endswith("s") else None
+        if given is not None and given.text:
+            message = (
+                f"{controller.name}.{key} is given a string; the controller stops without a "
+                f"list: [{given.text}]"
+            )
+            yield Mismatch(CONTROLLER_LIST, message, given.location)
+
+
+def _claimed_twice(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
+    """Yield the command interfaces that a controller claims twice.
+
+    Steering controllers, which have the parameters of an older release as well, claim those of
+    one release.
+    """
+    needed = controller_row(controller.type.text).joints
+    if len(needed) > _MAX_KEYS:
+        return
+    claimed: dict[str, Location] = {}
+    for joint, interfaces in _needed_in(section, needed):
+        for interface in interfaces:
+            name = f"{joint.text}/{interface}"
+            before = claimed.setdefault(name, joint.location)
+            if before != joint.location:
+                message = (
+                    f"{controller.name} claims the command interface {name} twice "
+                    f"({before.file_and_line})"
+                )
+                yield Mismatch(CLAIMED_ONCE, message, joint.location, before)
+
+
+def _section_corrections(
+    workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]
+) -> tuple[Correction, ...]:
+    """Return the correction of a controller's name above its parameters.
+
+    It may also correct the key ros__parameters there.
+    """
+    meant = closest(controller.name, sections)
+    if meant is not None:
+        return corrections(meant, sections[meant].location, controller.name, controller.location)
+    for _, tree in workspace.installed.trees:
+        section = tree.get(controller.name)
+        if section is None or not isinstance(section.value, dict):
+            continue
+        for key, node in section.value.items():
+            if is_misspelt_key(key, node):
+                return corrections(key, node.location, PARAMETERS)
+    return ()
+
+
+def _needed_in(
+    section: YamlNode, needed: Mapping[str, str]
+) -> Iterator[tuple[YamlNode, list[str]]]:
+    """Yield the joints in a controller's parameters, with the command interfaces it needs."""
+    for key, wanted in needed.items():
+        names = [wanted]
+        if wanted.startswith("="):
+            names = [given.text or "" for given in _entries(section, wanted.removeprefix("="))]
+        for joint in _entries(section, key):
+            yield joint, names
+
+
+def _entries(section: YamlNode, key: str) -> Sequence[YamlNode]:
+    """Return the entries of a list of parameters, or the one that stands in its place."""
+    given = section.get(key)
+    if given is None:
+        return ()
+    return given.items or [given]
+
+
+def needed_interfaces(workspace: Workspace) -> frozenset[str]:
+    """Return the command interfaces that controllers need, each as joint/interface."""
+    sections = parameters_of_controllers(workspace)
+    needed: set[str] = set()
+    for controller in defined_controllers(workspace):
+        section = sections.get(controller.name)
+        if section is not None:
+            row = controller_row(controller.type.text)
+            for joint, names in _needed_in(section, row.joints):
+                needed |= {f"{joint.text}/{name}" for name in names}
+    return frozenset(needed)
+
+
+def _no_interface(
+    workspace: Workspace, controller: Controller, section: YamlNode
+) -> Iterator[Mismatch]:
+    """Yield the command interfaces that a controller needs and <ros2_control> does not have.
+
+    They are those of a joint.
+
+    Names that are no joints of a robot are mistakes of frames. A joint without <ros2_control> is
+    said only where the robot has no more than is read.
+    """
+    robots = robots_for_file(workspace, section.source.path).robots
+    interfaces = command_interfaces(robots)
+    are_comparable = _are_all_joints(workspace, robots, interfaces)
+    for joint, needed in _needed_in(section, controller_row(controller.type.text).joints):
+        name = joint.text or ""
+        message = f"{controller.name} needs the command interface {name}"
+        if name in interfaces:
+            yield from _missing_interfaces(workspace, joint, needed, message, interfaces[name])
+        elif are_comparable and needed and _are_all_joints(workspace, robots, [name]):
+            text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
+            yield Mismatch(CONTROLLER_INTERFACE, text, joint.location)
+
+
+def _beside(workspace: Workspace, controller: Controller, section: YamlNode) -> YamlNode:
+    """Return the parameters of a controller in the file that defines it, else those of its name."""
+    for keys, node in named_sections(workspace):
+        is_beside = node.source.path == controller.type.source.path and node.get("joints")
+        if is_beside and keys[-1].rpartition("/")[2] == controller.name:
+            return node
+    return section
+
+
+def _no_state(
+    workspace: Workspace, controller: Controller, section: YamlNode
+) -> Iterator[Mismatch]:
+    """Yield the state interfaces of a list that <ros2_control> does not have of a joint.
+
+    Own hardware may have others than those that are listed there.
+    """
+    if not is_known_controller(controller.type.text):
+        return
+    robots = robots_for_file(workspace, section.source.path).robots
+    offered = state_interfaces(robots)
+    for kind in _entries(section, "state_interfaces"):
+        lacking = []
+        for joint in _entries(section, "joints"):
+            name = joint.text or ""
+            if name in offered and kind.text not in offered[name]:
+                lacking.append(name)
+        if lacking and not may_be_offered(workspace, kind.text or "", "state_interface"):
+            text = (
+                f"{controller.name} needs the state interface {lacking[0]}/{kind.text}, which "
+                "<ros2_control> does not have"
+            )
+            yield Mismatch(CONTROLLER_INTERFACE, text, kind.location)
+
+
+def _are_all_joints(
+    workspace: Workspace, robots: Sequence[KnownRobot], names: Collection[str]
+) -> bool:
+    """Return whether all of some names, if any, are joints of robots that are read whole."""
+    joints: set[str] = set()
+    for known_robot in robots:
+        joints |= {joint.name for joint in known_robot.robot.joints}
+    return bool(names) and joints.issuperset(names) and workspace.robots.has_all_interfaces
+
+
+def _missing_interfaces(
+    workspace: Workspace,
+    joint: YamlNode,
+    needed: Sequence[str],
+    message: str,
+    interfaces: tuple[frozenset[str], Location],
+) -> Iterator[Mismatch]:
+    """Yield the command interfaces that <ros2_control> does not have of a joint that it has."""
+    offered, at = interfaces
+    there = f"<ros2_control> has {', '.join(sorted(offered)) or 'none'} ({at.file_and_line})"
+    for missing in needed:
+        if missing not in offered and not may_be_offered(workspace, missing):
+            either = corrections(missing, joint.location, near(missing, offered), at)
+            text = f"{message}/{missing}; {there}"
+            yield Mismatch(CONTROLLER_INTERFACE, text, joint.location, at, corrections=either)
+
+
+def _action_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers whose actions own nodes ask for."""
+    namespaces = _namespaces(workspace)
+    for _, node in workspace.launches.nodes:
+        own_node = workspace.code.own_node(node)
+        for endpoint in own_node.endpoints if own_node is not None else ():
+            topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
+            controller, _, action = (topic or "").rpartition("/")
+            namespace, _, name = controller.strip("/").rpartition("/")
+            if action in controller_actions():
+                written = name if namespace in namespaces else controller.strip("/")
+                yield Use("controller", written, endpoint.location, "ActionClient")
+
+
+def _namespaces(workspace: Workspace) -> set[str]:
+    """Return the namespaces of controllers: those of keys, of controller managers and of Gazebo."""
+    names = {"/".join(keys).rpartition("/")[0] for keys, _ in named_sections(workspace)}
+    names |= {
+        node.namespace or "" for _, node in workspace.launches.nodes if node.package == MANAGER
+    }
+    for robot in workspace.robots.known:
+        names |= {element.text or "" for element in robot.root.iter("namespace")}
+    return {name.strip("/ ") for name in names}

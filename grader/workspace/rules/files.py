@@ -1,0 +1,427 @@
+"""Files: the paths that launch files, xacro and YAML name, and whether they are installed."""
+
+import posixpath
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from grader.base.names import closest, near
+from grader.base.source import Location, Source
+from grader.ros.installation.installation import Installation
+from grader.ros.installation.places import PREFIX, SHARE, share_parts
+from grader.ros.known.package_rows import names_of_read_files, package_row, written_files
+from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.package.found_problems import why_no_match
+from grader.ros.package.installed_files import (
+    are_installs_known,
+    is_surely_absent,
+    look_up,
+    similar_file,
+)
+from grader.ros.package.package import Package
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import (
+    Compared,
+    Correction,
+    Fact,
+    Mismatch,
+    Undecided,
+    corrections,
+    cost_of_guess,
+    warning,
+)
+from grader.workspace.rules.rule_table import (
+    FILE_INSTALLED,
+    FILE_PACKAGE,
+    LAUNCH_FILE_NAME,
+    MAP_IMAGE,
+    WORLD_MODEL,
+)
+
+# A path ends at a quote, a tag or a space, in YAML's flow style and in a substitution also at a
+# comma or a bracket.
+_FIND = re.compile(
+    r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?((?:[^\"'<>\s$,()[\]{}]|,(?=\w))*)(?=[\"'<\s,)\]}])"
+)
+_PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
+_MAX_TAG = 80  # characters of a tag and the spaces behind it
+_LAUNCH_FOLDER = "launch/"
+_PROPERTY = re.compile(r"<xacro:property\b[^<>]*?\bname\s*=\s*[\"'](\w+)[\"']")
+# Files of text that are read, which no download leaves out for their size; and programs.
+_URI = re.compile(r"package://([\w-]+)/([\w./-]+)")  # of a whole text
+_PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
+
+
+def file_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the paths at which a build of the workspace installs no file."""
+    yield from _faults_of(workspace, named_paths(workspace))
+    yield from _map_images(workspace)
+    yield from _models(workspace)
+    # Last: reading C++ takes work that the others need where little is left.
+    for package in workspace.packages:
+        yield from _faults_of(workspace, _paths_in_cpp(workspace, package))
+
+
+def _faults_of(workspace: Workspace, every: Iterable["PathInFile"]) -> Iterator[Fact]:
+    """Yield the paths that are compared, and then what is wrong with them."""
+    first_named: dict[tuple[str, Location], PathInFile] = {}
+    for named in every:
+        yield Compared("files", posixpath.normpath(named.path).removeprefix(f"{PREFIX}/"))
+        first = first_named.setdefault((named.path, named.location), named)
+        if named.is_needed:
+            first_named[named.path, named.location] = first._replace(is_needed=True)
+    for named in first_named.values():
+        for fact in _fault_of(workspace, named):
+            if isinstance(fact, Mismatch) and not named.is_read:
+                yield fact._replace(is_certain=False)
+            else:
+                yield fact
+
+
+class PathInFile(NamedTuple):
+    """A path below the prefix, with the package whose file names it.
+
+    It says whether the path is certainly looked for.
+
+    `is_needed`: whether a program certainly reads the file and never writes it; `is_output`:
+    whether an own node, which is given the path, may write it.
+    """
+
+    package: Package
+    path: str
+    location: Location
+    is_read: bool
+    is_output: bool = False
+    is_needed: bool = False
+
+
+def named_paths(workspace: Workspace) -> Iterator[PathInFile]:
+    """Yield the paths that are named."""
+    for package, own_path, launch in workspace.launches.files:
+        yield from _paths_in_launch_file(workspace, package, own_path, launch)
+    for package in workspace.packages:
+        left_out = _robots_left_out(workspace, package)
+        for source in workspace.texts.sources_of(package, (".xacro", ".urdf", ".yaml")):
+            is_read = (
+                source.path.endswith(".yaml")
+                or not workspace.robots.known
+                or source.path in workspace.robots.files
+            ) and source.path not in left_out
+            yield from _paths_in_source(workspace, package, source, is_read=is_read)
+
+
+def _paths_in_source(
+    workspace: Workspace, package: Package, source: Source, *, is_read: bool
+) -> Iterator[PathInFile]:
+    """Yield the paths that a file of a robot or of parameters names."""
+    for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
+        start = match.start()
+        is_used = is_read and not _is_unused_property(workspace, source, start)
+        yield PathInFile(
+            package=package,
+            path=f"{SHARE}/{match[1]}/{match[2]}",
+            location=source.at(start),
+            is_read=is_used,
+            is_needed=_is_in_parameters(source, start),
+        )
+
+
+def _is_in_parameters(source: Source, at: int) -> bool:
+    """Return whether a place is the text of <parameters>, which gz_ros2_control reads."""
+    return source.text[max(0, at - _MAX_TAG) : at].rstrip().endswith("<parameters>")
+
+
+def _robots_left_out(workspace: Workspace, package: Package) -> frozenset[str]:
+    """Return the robots that a build of a package does not install, while it has others.
+
+    It installs others, or has several of one name, of which one is copied to where it is needed.
+    What launch files read is not among them.
+    """
+    installed = set(package.installed.values())
+    robots = [path for path in package.tree.files if path.endswith((".urdf", ".xacro"))]
+    if not are_installs_known(package):
+        return frozenset()
+    counts = Counter(map(posixpath.basename, robots))
+    are_others_installed = not installed.isdisjoint(robots)
+    launched: set[str] = set()
+    for _, _, launch in workspace.launches.files:
+        launched |= {posixpath.basename(named.path or "") for named in launch.named("urdf")}
+    left_out: set[str] = set()
+    for path in robots:
+        name = posixpath.basename(path)
+        has_others = are_others_installed or counts[name] > 1
+        if has_others and path not in installed and name not in launched:
+            left_out.add(package.path(path))
+    return frozenset(left_out)
+
+
+def _paths_in_launch_file(
+    workspace: Workspace, package: Package, own_path: str, launch: Launch
+) -> Iterator[PathInFile]:
+    """Yield the paths that a launch file of a package names."""
+    beside = None
+    # From the folder of the sources, a launch file finds what is beside it.
+    if own_path not in package.installed.values():
+        beside = f"{PREFIX}/{package.share}{posixpath.dirname(own_path)}/"
+    for text in _texts_of(workspace, launch):
+        paths = _PATH.findall(text.text or "")
+        uri = _URI.fullmatch(text.text or "")
+        if uri is not None:
+            paths.append(f"{SHARE}/{uri[1]}/{uri[2]}")
+        for path in paths:
+            is_beside = beside is not None and path.startswith(beside)
+            is_read = text.is_read and not is_beside
+            yield PathInFile(package, path, text.location, is_read, text.is_output, text.is_needed)
+
+
+def _paths_in_cpp(workspace: Workspace, package: Package) -> Iterator[PathInFile]:
+    for text, at in workspace.code.by_package[package.name].texts:
+        for match in _PACKAGE.finditer(f"{text} "):
+            yield PathInFile(package, f"{SHARE}/{match[1]}/{match[2]}", at, is_read=True)
+
+
+def _is_unused_property(workspace: Workspace, source: Source, at: int) -> bool:
+    """Return whether a place is in the value of a property of xacro that no other place names."""
+    tag = source.text[source.text.rfind("<", 0, at) : at]
+    name = _PROPERTY.match(tag)
+    if name is None:
+        return False
+    return name[1] not in workspace.robots.words_in_expressions
+
+
+class _Text(NamedTuple):
+    """A text of a launch file that may name files, and whether it is certainly used."""
+
+    text: str | None
+    location: Location
+    is_read: bool = True
+    is_output: bool = False  # whether an own node gets it, which may write the file
+    is_needed: bool = False  # whether a program reads the file, and never writes it
+
+
+def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
+    """Yield the texts of a launch file that may name files."""
+    for passed in launch.passed:
+        is_own = any(
+            passed.path.startswith(own_package.share) for own_package in workspace.packages
+        )
+        for name, value in passed.values:
+            is_needed = bool(passed.when) and not is_own and name in names_of_read_files()
+            yield _Text(value, passed.location, is_needed=is_needed)
+    for node in launch.nodes:
+        yield from _texts_given(node, is_own=workspace.package_of(node) is not None)
+    for reference in launch.references:
+        yield _Text(reference.path, reference.location, is_needed=True)
+
+
+def _texts_given(node: StartedNode, *, is_own: bool) -> Iterator[_Text]:
+    """Yield the texts that a node is given.
+
+    The launch file that includes it may never start it, whatever the arguments.
+    """
+    is_read = node.when is not False or not node.included_by
+    for word in node.arguments or ():
+        yield _Text(word, node.location, is_read, is_own)
+    for given in node.parameters or ():
+        yield _Text(given.path, given.location, is_read, is_needed=is_read)
+        for name, parameter in given.values.items():
+            if isinstance(parameter.value, str):
+                is_needed = is_read and not is_own and name in names_of_read_files()
+                yield _Text(parameter.value, parameter.location, is_read, is_own, is_needed)
+
+
+def _fault_of(workspace: Workspace, named: PathInFile) -> Iterator[Fact]:
+    """Yield that no file is installed at a path, if this is certain."""
+    package, at = named.package, named.location
+    name, rest = share_parts(named.path)
+    owner = package.find(name)
+    if owner is None:
+        yield from _no_package(workspace, named)
+        return
+    target = f"share/{name}/{rest}"
+    if not rest or target in owner.installed or rest in written_files():
+        return
+    workspace.charge(len(owner.installed) // 8)
+    if any(path.startswith(f"{target}/") for path in owner.installed):
+        return
+    if not workspace.folder.means_one(package, name):
+        yield Undecided("files", f"several packages are named {name!r}")
+        return
+    if not are_installs_known(owner):
+        yield Undecided("files", f"whether a build installs {target} is not evaluated")
+        return
+    inside = target.removeprefix(owner.share)
+    workspace.charge(2 * cost_of_guess(len(owner.tree.files)) + len(owner.tree.files))
+    if inside in owner.tree.folders:
+        yield from _no_folder(owner, inside, f"a build installs no {target}", at)
+    else:
+        is_absent = is_surely_absent(owner, target)
+        if named.is_needed and not is_absent:  # the second question costs more
+            is_absent = workspace.texts.is_nowhere(owner, target)
+        yield _not_there(owner, target, at, is_output=named.is_output, is_absent=is_absent)
+
+
+def _no_package(workspace: Workspace, named: PathInFile) -> Iterator[Mismatch]:
+    """Yield that the package of a path is a misspelt one of the workspace.
+
+    Others may be installed; of a well-known one it is compared which launch files it has.
+    """
+    package, at = named.package, named.location
+    name, rest = share_parts(named.path)
+    workspace.charge(cost_of_guess(len(workspace.packages)))
+    meant = near(name, [other.name for other in workspace.packages])
+    if meant is not None and not package.depends_on(name):
+        message = f"there is no package {name!r}; did you mean {meant!r}?"
+        yield Mismatch(FILE_PACKAGE, message, at, corrections=corrections(name, at, meant))
+    elif rest.startswith(_LAUNCH_FOLDER):
+        yield from _misspelt_launch_file(name, rest.removeprefix(_LAUNCH_FOLDER), at)
+
+
+def _misspelt_launch_file(package: str, file: str, at: Location) -> Iterator[Mismatch]:
+    """Yield that a well-known package has a launch file of nearly this name, and none of this."""
+    ending = file.partition(".")[2]
+    stems = []
+    for known_file in package_row(package).launch:
+        if known_file == file:
+            return
+        if known_file.endswith(f".{ending}"):
+            stems.append(known_file.removesuffix(f".{ending}"))
+    stem = near(file.removesuffix(f".{ending}"), stems)
+    if stem is not None:
+        meant = f"{stem}.{ending}"
+        message = f"{package} is not known to have a launch file {file!r}; did you mean {meant!r}?"
+        either = corrections(file, at, meant)
+        yield warning(LAUNCH_FILE_NAME, message, at)._replace(corrections=either)
+
+
+def _not_there(
+    owner: Package, target: str, at: Location, *, is_output: bool, is_absent: bool
+) -> Mismatch:
+    """Return where else a build installs a file, or what the package has instead of it."""
+    setup, name = owner.installation, posixpath.basename(target)
+    assert setup is not None
+    start = Location(setup.source.path, 1, 1)
+    source, missing = look_up(owner, target), f"a build installs no {target}"
+    if source.state == "elsewhere":
+        message = f"{missing}: it installs the file as {source.path}"
+        either = _folder_corrections(target, source.path, at, start)
+        cause = f"{posixpath.dirname(target)} is {posixpath.dirname(source.path)}"
+        return Mismatch(
+            FILE_INSTALLED, message, at, corrections=either, cause=cause, names=(target,)
+        )
+    if source.state == "not installed":
+        message = f"{missing}: no {setup.entry} names {source.path}"
+        called_at = setup.location(setup.called_at)
+        empty = setup.empty_for([source.path], None)
+        if empty is not None:
+            why = f"the pattern {empty.pattern!r} in {setup.file} matches no file"
+            message = f"{missing}: {why}{why_no_match(owner, empty.pattern)}"
+            called_at = setup.location(empty.at)
+        either = _install_corrections(setup, source.path, start)
+        cause = f"{setup.entry} lacks {posixpath.dirname(source.path)}"
+        return Mismatch(
+            FILE_INSTALLED,
+            message,
+            at,
+            called_at,
+            corrections=either,
+            cause=cause,
+            names=(target,),
+        )
+    meant = similar_file(owner, name)
+    guess = f"; did you mean {meant!r}?" if meant else ""
+    message = f"{missing}: the package has no file {name!r}{guess}"
+    is_certain = is_absent and not is_output
+    either = corrections(name, at, meant)
+    cause = f"no file in {posixpath.dirname(target)}" if meant is None else ""
+    return Mismatch(
+        FILE_INSTALLED, message, at, None, is_certain, either, cause=cause, names=(target,)
+    )
+
+
+def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Iterator[Mismatch]:
+    """Yield where else a build installs what is in a folder, if anywhere."""
+    setup = owner.installation
+    assert setup is not None
+    # CMake also makes folders that stay empty.
+    may_be_made = setup.is_cmake and posixpath.basename(inside) in setup.source.text
+    for target, source in owner.installed.items():
+        if source.startswith(f"{inside}/"):
+            message = f"{missing}: it installs {source} as {target}"
+            yield Mismatch(FILE_INSTALLED, message, at, is_certain=not may_be_made)
+            return
+    if not may_be_made:
+        yield Mismatch(FILE_INSTALLED, f"{missing}: it installs no file of the folder {inside}", at)
+
+
+def _folder_corrections(
+    target: str, elsewhere: str, at: Location, start: Location
+) -> tuple[Correction, ...]:
+    """Return the correction of the one folder in which a path differs from an installed one.
+
+    The other path is the one at which the file is installed.
+    """
+    if target.count("/") != elsewhere.count("/"):
+        return ()
+    pairs = zip(target.split("/"), elsewhere.split("/"), strict=True)
+    differing = [(own_part, other) for own_part, other in pairs if own_part != other]
+    if len(differing) != 1:
+        return ()
+    [(own_part, other)] = differing
+    return corrections(own_part, at, other, start)
+
+
+def _install_corrections(setup: Installation, file: str, start: Location) -> tuple[Correction, ...]:
+    """Return the correction of a path in setup.py or CMakeLists.txt that does not exist.
+
+    The corrected path has the file.
+    """
+    wrong = [stop.path for stop in setup.stops]
+    wrong += [posixpath.dirname(empty.pattern) for empty in setup.empty]
+    for path in wrong:
+        meant = closest(path, [file, posixpath.dirname(file)])
+        if meant is not None:
+            return corrections(path.rstrip("/"), start, meant)
+    return ()
+
+
+def _map_images(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the images of maps that are not there."""
+    files = workspace.tree.files
+    for path, tree in workspace.installed.trees:
+        image = tree.get("image")
+        if image is None or not image.text or tree.get("resolution") is None:
+            continue
+        wanted = posixpath.normpath(posixpath.join(posixpath.dirname(path), image.text))
+        if image.text.startswith("/") or wanted in files:
+            continue
+        workspace.charge(len(files) + cost_of_guess(len(files)))
+        folder, name = posixpath.split(wanted)
+        beside = [file for file in files if posixpath.dirname(file) == folder and file != path]
+        meant = closest(name, map(posixpath.basename, beside))
+        guess = f"; did you mean {meant!r}?" if meant else ""
+        message = f"the image of the map, {image.text!r}, does not exist{guess}"
+        either = corrections(name, image.location, meant)
+        yield Mismatch(MAP_IMAGE, message, image.location, corrections=either)
+
+
+def _models(workspace: Workspace) -> Iterator[Fact]:
+    """Yield models that worlds include, and whose names are similar to those of the workspace."""
+    models = set()
+    for package in workspace.packages:
+        for path in package.tree.files:
+            if path.endswith(("/model.sdf", "/model.config")):
+                models.add(posixpath.basename(posixpath.dirname(path)))
+    for file in workspace.texts.sdf_files:
+        for element in file.root.iter("uri"):
+            text = (element.text or "").strip()
+            name = text.removeprefix("model://").partition("/")[0]
+            if not text.startswith("model://") or name in models:
+                continue
+            workspace.charge(cost_of_guess(len(models)))
+            meant = near(name, models)
+            if meant is not None:
+                at = file.location(element)
+                message = f"there is no model {name!r}; did you mean {meant!r}?"
+                yield Mismatch(WORLD_MODEL, message, at, corrections=corrections(name, at, meant))

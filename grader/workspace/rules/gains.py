@@ -1,0 +1,70 @@
+"""Gains of controllers: one that computes commands with gains moves nothing if none is given."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.known.package_rows import GainsRow, controller_row
+from grader.ros.launch.node_parameters import NodeParameters
+from grader.ros.python.values import Unknown
+from grader.workspace.graph.started_controllers import defined_controllers
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.rule_table import (
+    GAIN_SET,
+)
+
+
+class _LackingGains(NamedTuple):
+    """A joint without gains, the interface of its commands, and where this is asked for."""
+
+    joint: str
+    interface: str
+    location: Location
+
+
+def gain_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers that are given no gains for a joint, and need them."""
+    for controller in defined_controllers(workspace):
+        gains = controller_row(controller.type.text).gains
+        gifts = workspace.parameters.owners.get(controller.name, [])
+        if gains is None or not gifts or any(given.unknown for given in gifts):
+            continue
+        workspace.charge(len(gifts))
+        yield Compared("effects")
+        lacks = [lack for given in gifts if (lack := _find_lack(gains, given)) is not None]
+        if len(lacks) == len(gifts):
+            yield _moves_nothing(controller.name, lacks[0])
+
+
+def _find_lack(row: GainsRow, given: NodeParameters) -> _LackingGains | None:
+    """Return the first joint without gains; None where there is none, or this is not known."""
+    interfaces = _texts(given, row.interfaces)
+    if len(interfaces) != 1 or interfaces[0] not in row.of:
+        return None
+    [interface] = interfaces
+    if row.without.get(interface) in given.values:
+        return None
+    for joint in _texts(given, row.joints):
+        gains = [given.values.get(f"gains.{joint}.{name}") for name in row.names]
+        if all(gain is None or gain.value in (0, 0.0) for gain in gains):
+            return _LackingGains(joint, interface, given.values[row.interfaces].location)
+    return None
+
+
+def _texts(given: NodeParameters, name: str) -> list[str]:
+    """Return the texts in a list; none where it is not known."""
+    parameter = given.values.get(name)
+    value = parameter.value if parameter is not None else None
+    if isinstance(value, Unknown) or not isinstance(value, list):
+        return []
+    return [text for text in value if isinstance(text, str)]
+
+
+def _moves_nothing(controller: str, lack: _LackingGains) -> Mismatch:
+    message = (
+        f"{controller} commands the {lack.interface} of {quoted(lack.joint)} without gains, so it "
+        f"moves nothing: give it gains.{lack.joint}.p"
+    )
+    return warning(GAIN_SET, message, lack.location)

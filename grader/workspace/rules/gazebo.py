@@ -1,0 +1,212 @@
+"""Gazebo: the topics of sensors and systems, and what launch files ask of the simulation.
+
+The sensors and systems are those in the robot and in worlds.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+
+from grader.base.names import closest
+from grader.base.source import Location
+from grader.base.text import enumerated, quoted
+from grader.ros.known.gazebo_rows import NO_SENSOR, gazebo
+from grader.ros.known.package_tables import create_table
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.xml.parsing import Element, XmlFile
+from grader.workspace.graph.bridge_rows import BRIDGE
+from grader.workspace.graph.gazebo_topics import roots, system_of
+from grader.workspace.graph.started_worlds import started_worlds
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Fact, Mismatch, corrections, warning
+from grader.workspace.rules.rule_table import (
+    BRIDGE_TOPICS,
+    CREATE_OPTION,
+    CREATED_FROM,
+    CREATED_TOPIC,
+    CREATED_WORLD,
+    SENSOR_SYSTEM,
+    SIMULATION_STARTED,
+)
+
+_SIMULATION = "ros_gz_sim"
+_OPTION = re.compile(r"--?[A-Za-z]")
+_WITHOUT_VALUE = "allow_renaming"  # an option of create
+
+
+def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield systems that worlds lack, and what is spawned, or bridged, from what is not there."""
+    worlds: dict[str, XmlFile] = {}  # those that launch files name
+    for file in workspace.texts.sdf_files:
+        name = file.source.path.rpartition("/")[2]
+        if any(name in text for text in workspace.texts.searched_launch_texts()):
+            for world in file.root.iterchildren("world"):
+                worlds[world.get("name", "")] = file
+                yield from _missing_systems(workspace, file, world)
+    for _, node in workspace.launches.nodes:
+        if _is_creator(node):
+            yield from _created_from_topic(workspace, node)
+            yield from _created_in_world(node, worlds)
+            yield from _unknown_options(node)
+            yield from _created_from_nothing(node)
+    yield from _created_without_gazebo(workspace)
+    yield from _bridges(workspace)
+
+
+def _created_without_gazebo(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that a robot is created, and that no launch file starts Gazebo with its world.
+
+    Nothing is said where launch files name no world of the workspace: another command may start it.
+    """
+    creators = [node for _, node in workspace.launches.nodes if _is_creator(node) and node.when]
+    if creators and not started_worlds(workspace).may_start:
+        message = "no launch file starts Gazebo, for which create waits"
+        yield warning(SIMULATION_STARTED, message, creators[0].location)
+
+
+def _is_creator(node: StartedNode) -> bool:
+    """Return whether a node creates a robot in the simulation."""
+    return node.package == _SIMULATION and node.executable == "create"
+
+
+def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Iterator[Mismatch]:
+    """Yield the systems that a world lacks for sensors in it and in the robot.
+
+    The world has systems of its own.
+
+    Gazebo loads its default systems in a world without any. Which one of several robots is created
+    in the world is not evaluated.
+    """
+    if next(world.iterchildren("plugin"), None) is None or not workspace.robots.known:
+        return
+    systems = set()
+    for root, _ in roots(workspace):
+        systems |= {system_of(plugin) for plugin in root.iter("plugin")}
+    for sensor, at in _sensors_in_world(workspace, file):
+        system = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR).system
+        if system and system not in systems:
+            systems.add(system)
+            message = (
+                f"the world has no plugin gz::sim::systems::{system}, so the sensor "
+                f"{quoted(sensor.get('name', ''))} ({at.file_and_line}) publishes nothing"
+            )
+            yield Mismatch(SENSOR_SYSTEM, message, file.location(world), at)
+
+
+def _sensors_in_world(workspace: Workspace, file: XmlFile) -> Iterator[tuple[Element, Location]]:
+    """Yield the sensors of a file of a world, and of the only robot, if it is created."""
+    seen = [file.root]
+    is_created = any(_is_creator(node) for _, node in workspace.launches.nodes)
+    if is_created and len(workspace.robots.known) == 1:
+        seen.append(workspace.robots.known[0].root)
+    for root, place in roots(workspace):
+        if any(root is each for each in seen):
+            for sensor in root.iter("sensor"):
+                yield sensor, place(sensor)
+
+
+def _values_of_options(node: StartedNode) -> Mapping[str, str]:
+    """Return the words after the options of a program, where both are known."""
+    options: dict[str, str] = {}
+    for key, value in pairwise(node.arguments or ()):
+        if key is not None and value is not None:
+            options[key.lstrip("-")] = value
+    return options
+
+
+def _created_in_world(node: StartedNode, worlds: Mapping[str, XmlFile]) -> Iterator[Mismatch]:
+    """Yield that a robot is created in another world than the one that launch files name.
+
+    The name is compared where launch files name only one world.
+    """
+    wanted = _values_of_options(node).get("world")
+    if wanted is None or len(worlds) != 1 or wanted in worlds:
+        return
+    [(world, file)] = worlds.items()
+    message = (
+        f"the robot is created in the world {quoted(wanted)}, but the world of "
+        f"{file.source.path} is {quoted(world)}"
+    )
+    at = file.location(next(file.root.iterchildren("world")))
+    either = corrections(wanted, node.location, world)
+    yield Mismatch(CREATED_WORLD, message, node.location, at, corrections=either)
+
+
+def _options_given(node: StartedNode) -> list[str] | None:
+    """Return the options that the program that creates robots gets.
+
+    The result is None where not all are known.
+    """
+    words = node.arguments
+    if words is None or None in words:
+        return None
+    given: list[str] = []
+    is_value = False
+    for word in words:
+        if word is None or word == "--ros-args":
+            break
+        if is_value or not _OPTION.match(word):
+            is_value = False
+            continue
+        name, equals, _ = word.lstrip("-").replace("-", "_").partition("=")  # as gflags does
+        given.append(name)
+        is_value = not equals and name in create_table().options and name != _WITHOUT_VALUE
+    return given
+
+
+def _unknown_options(node: StartedNode) -> Iterator[Mismatch]:
+    """Yield the options that the program that creates robots does not have, and ignores."""
+    for name in _options_given(node) or ():
+        if name in create_table().options:
+            continue
+        similar = closest(name, create_table().options, is_clear=True)
+        meant = create_table().older.get(name) or similar
+        guess = f"; did you mean -{meant}?" if meant else ""
+        message = f"create has no option -{name}, and ignores it{guess}"
+        yield warning(CREATE_OPTION, message, node.location)
+
+
+def _created_from_nothing(node: StartedNode) -> Iterator[Mismatch]:
+    """Yield that the program that creates robots gets no source of one. Parameters may name it."""
+    given = _options_given(node)
+    if given is None or node.parameters != () or set(given).intersection(create_table().sources):
+        return
+    sources = enumerated([f"-{name}" for name in create_table().sources], word="or")
+    message = f"create ends with an error: it needs {sources}"
+    yield Mismatch(CREATED_FROM, message, node.location, is_certain=node.when is True)
+
+
+def _created_from_topic(workspace: Workspace, node: StartedNode) -> Iterator[Mismatch]:
+    """Yield that no robot_state_publisher publishes the topic from which a robot is created.
+
+    Nothing is said where more nodes may be started, or one of them may publish the topic.
+    """
+    topic = _values_of_options(node).get("topic")
+    name = node.topic(topic) if topic is not None else None
+    if topic is None or name is None or workspace.launches.unknown_nodes:
+        return
+    published: dict[str, Location] = {}
+    for _, other in workspace.launches.nodes:
+        if other.package == "robot_state_publisher":
+            description = other.topic("robot_description")
+            if description is None:
+                return
+            published.setdefault(description, other.location)
+    if published and name not in published:
+        meant, at = next(iter(published.items()))
+        message = f"the robot is created from {name}, but robot_state_publisher publishes {meant}"
+        either = corrections(topic, node.location, meant.strip("/"))
+        yield Mismatch(CREATED_TOPIC, message, node.location, at, corrections=either)
+
+
+def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield bridges without any topic."""
+    for package, node in workspace.launches.nodes:
+        is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
+        if is_bridge and node.arguments == ():
+            given = workspace.parameters.given_to(package, node)
+            if not given.unknown and "config_file" not in given.values:
+                message = (
+                    "the bridge has no topics: neither arguments, nor the parameter config_file"
+                )
+                yield Mismatch(BRIDGE_TOPICS, message, node.location)

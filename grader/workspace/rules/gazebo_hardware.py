@@ -1,0 +1,45 @@
+"""The hardware of robots in Gazebo, and the plugin of ros2_control that loads it."""
+
+import re
+from collections.abc import Iterator
+
+from grader.workspace.model.known_robots import KnownRobot
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Fact, Mismatch, warning
+from grader.workspace.rules.rule_table import GAZEBO_HARDWARE
+
+_PACKAGES = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
+_LIBRARY = re.compile(r"(?:lib)?(\w+?_ros2_control)(?:-system)?(?:\.so)?")
+
+
+def gazebo_hardware_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield hardware of another package than the plugin of Gazebo that loads it."""
+    for robot in workspace.robots.known:
+        loading = _loading_packages(robot)
+        for system in robot.systems if loading else ():
+            yield from _other_hardware(robot, system.findtext("hardware/plugin") or "", loading)
+
+
+def _loading_packages(robot: KnownRobot) -> set[str]:
+    """Return the packages whose plugins of Gazebo load the hardware of a robot."""
+    packages = set()
+    for plugin in robot.root.iter("plugin"):
+        library = _LIBRARY.fullmatch(plugin.get("filename", ""))
+        if library is not None and library[1] in _PACKAGES:
+            packages.add(library[1])
+    return packages
+
+
+def _other_hardware(robot: KnownRobot, hardware: str, loading: set[str]) -> Iterator[Mismatch]:
+    """Yield that hardware is of a package for Gazebo whose plugin is not loaded."""
+    name = hardware.strip().partition("/")[0]
+    if name not in _PACKAGES or name in loading:
+        return
+    for element in robot.root.iterfind("ros2_control/hardware/plugin"):
+        if (element.text or "").strip() == hardware.strip():
+            message = (
+                f"the plugin of {min(loading)} loads no hardware of {name}: both have to be of "
+                "one package"
+            )
+            yield warning(GAZEBO_HARDWARE, message, robot.place(element))
+            return

@@ -1,0 +1,467 @@
+"""Interfaces: the files of messages, services and actions, and the types that nodes use.
+
+Also what generates code of the files, and the fields that nodes use.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from grader.base.names import closest, near
+from grader.base.source import Location
+from grader.base.text import MAX_NAMED, enumerated, quoted
+from grader.ros.interfaces.interface_types import (
+    BOOLEANS,
+    FLOATS,
+    INTEGERS,
+    TEXTS,
+    FieldType,
+    Interface,
+    InterfaceField,
+    InterfaceSection,
+)
+from grader.ros.interfaces.known_interfaces import (
+    MORE_CONSTANTS,
+    find_change,
+    is_open_in,
+    known_interfaces,
+)
+from grader.ros.known.cmake_words import cmake_words
+from grader.ros.known.releases import RELEASES, Release
+from grader.ros.nodes.message_uses import ITEM
+from grader.ros.nodes.node_facts import FieldUse
+from grader.ros.package.package import Package
+from grader.ros.package.package_interfaces import PackageInterfaces
+from grader.ros.python.values import Value
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch, Undecided, corrections
+from grader.workspace.rules.rule_table import (
+    FIELD_VALUE,
+    INTERFACE_DEPENDENCY,
+    INTERFACE_FIELD,
+    INTERFACE_FILE,
+    INTERFACE_GROUP,
+    INTERFACE_TYPE,
+)
+
+_GROUP = "rosidl_interface_packages"
+# What rosidl brings for services and actions without naming them.
+_IMPLICIT = ("service_msgs", "action_msgs", "builtin_interfaces", "unique_identifier_msgs")
+# What rosidl puts into messages, requests and goals without fields (rosidl_parser,
+# EMPTY_STRUCTURE_REQUIRED_MEMBER_NAME); the classes of Python do not have it.
+_OF_EMPTY = "structure_needs_at_least_one_member"
+_OF_PYTHON = ("get_fields_and_field_types", "SLOT_TYPES")  # besides what begins with _
+# Releases whose setters check the type of what is assigned: rosidl_generator_py of Foxy to Iron.
+_CHECKING = RELEASES[: RELEASES.index("jazzy")]
+_GOAL_HANDLE = "GoalHandle"
+# Types whose lists take bytes, too, or items of several types.
+_OPEN_ITEMS = BOOLEANS | {"byte", "char", "octet", "uint8", "int8"}
+# Releases that have the headers of all packages in one folder, where a compiler finds them.
+_OF_ONE_FOLDER: frozenset[Release] = frozenset({"foxy", "galactic"})
+
+
+def interface_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what is wrong with interfaces, and types and fields that are used and do not exist."""
+    for package in workspace.packages:
+        interfaces = workspace.code.interfaces[package.name]
+        if interfaces.location is None and not interfaces.unlisted:
+            continue
+        yield Compared("interfaces")
+        if not interfaces.is_complete:
+            reason = f"which interfaces {package.name!r} generates is not evaluated"
+            yield Undecided("interfaces", reason)
+        yield from _no_group(package, interfaces)
+        yield from _unreadable_files(interfaces)
+        yield from _types_of_fields(workspace, package, interfaces)
+    for package in workspace.packages:
+        yield from _used_types(workspace, package)
+        for use in workspace.code.by_package[package.name].field_uses:
+            workspace.charge(1 + len(use.path))
+            yield from _used_field(workspace, use)
+
+
+# --- Files and CMakeLists.txt
+
+
+def _no_group(package: Package, interfaces: PackageInterfaces) -> Iterator[Mismatch]:
+    """Yield that package.xml does not say that a package has interfaces.
+
+    Nothing is said of one that is not read whole, or that ROS 2 refuses.
+    """
+    manifest = package.manifest
+    if manifest is None or manifest.unread or manifest.refusals:
+        return
+    if interfaces.needs_group and _GROUP not in manifest.groups:
+        message = (
+            f"package.xml needs <member_of_group>{_GROUP}</member_of_group>: without it, "
+            "rosidl_generate_interfaces() stops the build"
+        )
+        yield Mismatch(INTERFACE_GROUP, message, manifest.name_location, interfaces.location)
+
+
+def _unreadable_files(interfaces: PackageInterfaces) -> Iterator[Mismatch]:
+    """Yield what rosidl cannot read in the files of interfaces."""
+    for own_type in interfaces.types.values():
+        for fault in own_type.interface.faults:
+            message = f"rosidl cannot read the file: {fault.message}"
+            either = corrections(fault.written, fault.location, fault.meant)
+            yield Mismatch(INTERFACE_FILE, message, fault.location, corrections=either)
+
+
+def _types_of_fields(
+    workspace: Workspace, package: Package, interfaces: PackageInterfaces
+) -> Iterator[Mismatch]:
+    """Yield that nothing defines the type of a field.
+
+    Or CMakeLists.txt does not name the package of the type.
+    """
+    for own_type in interfaces.types.values():
+        for section in own_type.interface.sections:
+            for field in section.fields.values():
+                workspace.charge(1)
+                kind, at = field.type, field.location
+                if not kind.package or at is None:
+                    continue
+                absent = _no_type(workspace, f"{kind.package}.msg.{kind.name}", at)
+                if absent is not None:
+                    yield absent
+                elif kind.package != package.name:
+                    yield from _no_dependency(workspace, interfaces, field, at)
+
+
+def _no_dependency(
+    workspace: Workspace, interfaces: PackageInterfaces, field: InterfaceField, at: Location
+) -> Iterator[Mismatch]:
+    """Yield that CMakeLists.txt does not name the package of the type of a field.
+
+    Nothing is said where not all is known that it names, and for releases that have all headers
+    in one folder.
+    """
+    if not interfaces.is_complete or _OF_ONE_FOLDER.intersection(workspace.releases):
+        return
+    reached = _reached(workspace, interfaces)
+    if reached is not None and field.type.package not in reached:
+        message = (
+            f"the field {field.name} has a type of {field.type.package}, which DEPENDENCIES of "
+            "rosidl_generate_interfaces() does not name: the build stops"
+        )
+        yield Mismatch(INTERFACE_DEPENDENCY, message, at, interfaces.location)
+
+
+def _reached(workspace: Workspace, interfaces: PackageInterfaces) -> set[str] | None:
+    """Return the packages whose messages an interface may use; None if not all are known."""
+    exports = cmake_words().exports
+    pending, reached = [*interfaces.dependencies, *_IMPLICIT], set[str]()
+    while pending:
+        name = pending.pop()
+        if name in reached:
+            continue
+        reached.add(name)
+        other = workspace.code.interfaces.get(name)
+        if other is not None:
+            pending += other.dependencies
+        elif known_interfaces(name) is not None:
+            pending += _packages_used(name)
+        elif name not in exports:
+            return None
+        pending += exports.get(name, "").split() if other is None else ()
+    return reached
+
+
+def _packages_used(package: str) -> set[str]:
+    """Return the packages whose messages those of a well-known package use."""
+    names = set[str]()
+    for interface in (known_interfaces(package) or {}).values():
+        for section in interface.sections:
+            names.update(field.type.package for field in section.fields.values())
+    return names - {"", package}
+
+
+# --- Types
+
+
+def is_absent(workspace: Workspace, name: str) -> bool:
+    """Return whether nothing defines a type, such as chat_msgs.srv.Ask, if this is certain."""
+    package, _, own_name = name.partition(".")
+    if "_" in own_name:
+        return False  # of a section or an event, which rosidl generates too
+    interfaces = workspace.code.interfaces.get(package)
+    if interfaces is not None:
+        return interfaces.is_complete and own_name not in interfaces.types
+    known = known_interfaces(package, workspace.releases)
+    if known is None or own_name in known:
+        return False
+    if is_open_in(workspace.releases):
+        return find_change(package, own_name, workspace.releases) != ""
+    return True
+
+
+def _no_type(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
+    """Return that nothing defines a type, if this is certain."""
+    if not is_absent(workspace, name):
+        return None
+    package, _, own_name = name.partition(".")
+    kind, _, short = own_name.partition(".")
+    shown = f"there is no type {package}/{kind}/{short}"
+    interfaces = workspace.code.interfaces.get(package)
+    if interfaces is not None and own_name in interfaces.unlisted:
+        reason = f"rosidl_generate_interfaces() of {package} does not name its file"
+        if interfaces.location is None:
+            reason = f"{package} does not call rosidl_generate_interfaces()"
+        return Mismatch(INTERFACE_TYPE, f"{shown}: {reason}", at, interfaces.location)
+    if interfaces is not None:
+        names = [*interfaces.types]
+    else:
+        names = [*(known_interfaces(package, workspace.releases) or {})]
+    workspace.charge(len(names))
+    change = find_change(package, own_name, workspace.releases) if interfaces is None else ""
+    if change:
+        return Mismatch(INTERFACE_TYPE, f"{shown} {change}", at)
+    return _no_type_among(names, shown, f"{package}/", own_name, at)
+
+
+def _no_type_among(
+    names: Sequence[str], shown: str, folder: str, own_name: str, at: Location
+) -> Mismatch:
+    """Return that a package has no type of a name, with one of another kind or a similar one."""
+    kind, _, short = own_name.partition(".")
+    for other in names:
+        if other.partition(".")[2] == short:
+            hint = f"there is {folder}{other.replace('.', '/')}"
+            return Mismatch(INTERFACE_TYPE, f"{shown}; {hint}", at)
+    of_kind = [each.partition(".")[2] for each in names if each.startswith(f"{kind}.")]
+    return _no_type_of_kind(shown, short, of_kind, at)
+
+
+def _no_type_of_kind(shown: str, name: str, names: Sequence[str], at: Location) -> Mismatch:
+    """Return that there is no type of a name, among those of its kind, and which one is meant."""
+    meant = near(name, names) or closest(name, names)
+    hint = ""
+    if meant is not None:
+        hint = f"; did you mean {meant}?"
+    elif names and len(names) <= MAX_NAMED:
+        hint = f"; there is {enumerated(names)}"
+    either = corrections(name, at, meant)
+    return Mismatch(INTERFACE_TYPE, f"{shown}{hint}", at, corrections=either)
+
+
+def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
+    """Yield the types that a package's code imports or opens, and that do not exist."""
+    nodes = workspace.code.by_package[package.name]
+    used = {used_type.name: used_type.location for used_type in reversed(nodes.imports)}
+    for node in nodes.nodes:
+        for endpoint in node.endpoints:
+            if endpoint.type is not None and endpoint.type.count(".") == 2:
+                used.setdefault(endpoint.type, endpoint.location)
+    for name, at in used.items():
+        is_own = name.partition(".")[0] in workspace.code.interfaces
+        if is_own or known_interfaces(name.partition(".")[0]) is not None:
+            yield Compared("interfaces")
+        absent = _no_type(workspace, name, at)
+        if absent is not None:
+            yield absent
+
+
+def _find_interface(workspace: Workspace, package: str, name: str) -> Interface | None:
+    interfaces = workspace.code.interfaces.get(package)
+    if interfaces is not None:
+        own_type = interfaces.types.get(name)
+        return (
+            own_type.interface if own_type is not None and not own_type.interface.faults else None
+        )
+    return (known_interfaces(package, workspace.releases) or {}).get(name)
+
+
+# --- Fields
+
+
+def _used_field(workspace: Workspace, use: FieldUse) -> Iterator[Fact]:
+    """Yield that a type has no field that is used, or that it gets a value of another type."""
+    package, kind, name, *sections = use.type.split(".")
+    section_name, path = "".join(sections), use.path
+    if section_name == _GOAL_HANDLE:
+        if path[0] != "request" or len(path) == 1:
+            return
+        section_name, path = "Goal", path[1:]
+    interface = _find_interface(workspace, package, f"{kind}.{name}")
+    section = interface.section(section_name) if interface is not None else None
+    if section is not None:
+        owner = f"{name}.{section_name}" if section_name else name
+        yield from _used_at(workspace, f"{package}/{kind}/{owner}", section, path, use)
+
+
+def _used_at(
+    workspace: Workspace, shown: str, section: InterfaceSection, path: Sequence[str], use: FieldUse
+) -> Iterator[Fact]:
+    """Yield what is wrong with the last name of a path of fields that begins in a section."""
+    attribute, *rest = path
+    field = section.fields.get(attribute)
+    if field is None and not rest:
+        yield from _no_field(workspace, shown, section, attribute, use.location)
+    elif field is not None and not rest:
+        yield from _other_value(workspace, field, shown, use)
+    elif field is not None:
+        if field.type.is_list:
+            rest = rest[1:] if rest[0] == ITEM else []
+        inner_section = _section_of_type(workspace, field.type)
+        if rest and inner_section is not None:
+            shown = f"{field.type.package}/msg/{field.type.name}"
+            yield from _used_at(workspace, shown, inner_section, rest, use)
+
+
+def _section_of_type(workspace: Workspace, kind: FieldType) -> InterfaceSection | None:
+    """Return the fields of the message that a field has, or that its items are."""
+    interface = _find_interface(workspace, kind.package, f"msg.{kind.name}")
+    return interface.section("") if interface is not None else None
+
+
+def _is_of_python(section: InterfaceSection, attribute: str) -> bool:
+    """Return whether the class that rosidl generates has an attribute that is no field."""
+    may_be_constant = MORE_CONSTANTS in section.constants and attribute.isupper()
+    is_known = attribute in section.constants or attribute in _OF_PYTHON or may_be_constant
+    return is_known or attribute.startswith("_") or attribute.endswith("__DEFAULT")
+
+
+def _no_field(
+    workspace: Workspace, shown: str, section: InterfaceSection, attribute: str, at: Location
+) -> Iterator[Mismatch]:
+    """Yield that a type does not have a field or a constant that code uses.
+
+    Items of lists, and what the classes of Python have besides, are no fields.
+    """
+    is_of_empty = attribute == _OF_EMPTY and not section.fields and not at.path.endswith(".py")
+    if attribute == ITEM or is_of_empty or _is_of_python(section, attribute):
+        return
+    names, noun = [*section.fields], "field"
+    if attribute.isupper():
+        names, noun = sorted(section.constants), "constant"
+    workspace.charge(len(names))
+    inside = _fields_with(workspace, section, attribute)
+    meant = inside[0] if len(inside) == 1 else near(attribute, names) or closest(attribute, names)
+    if meant is not None:
+        hint = f"did you mean {meant}?"
+    else:
+        hint = f"it has {enumerated(names[:MAX_NAMED]) or 'none'}"
+        if len(names) > MAX_NAMED:
+            hint = f"{hint} and others"
+    message = f"{shown} has no {noun} {quoted(attribute)}; {hint}"
+    yield Mismatch(INTERFACE_FIELD, message, at, corrections=corrections(attribute, at, meant))
+
+
+def _fields_with(workspace: Workspace, section: InterfaceSection, attribute: str) -> list[str]:
+    """Return the fields of the fields of a section that have a name."""
+    inside = []
+    for field in section.fields.values():
+        if field.type.package and not field.type.is_list:
+            part = _section_of_type(workspace, field.type)
+            if part is not None and attribute in part.fields:
+                inside.append(f"{field.name}.{attribute}")
+    return inside
+
+
+def _other_value(
+    workspace: Workspace, field: InterfaceField, shown: str, use: FieldUse
+) -> Iterator[Mismatch]:
+    """Yield that a field is set to a value that its type certainly does not take."""
+    for value in use.literal:
+        if isinstance(value, list):
+            yield from _other_list(workspace, field, value, shown, use.location)
+        elif not _fits(field.type, value, workspace.releases):
+            wanted = _type_in_words(field.type)
+            message = (
+                f"the field {field.name} of {shown} is {wanted}; it is set to {_in_words(value)}"
+            )
+            yield Mismatch(FIELD_VALUE, message, use.location)
+
+
+def _type_in_words(kind: FieldType) -> str:
+    """Return the type of a field, as messages name it."""
+    wanted = kind.full_name.replace(".", "/")
+    return f"a list of {wanted}" if kind.is_list else wanted
+
+
+def _other_list(
+    workspace: Workspace, field: InterfaceField, items: Sequence[Value], shown: str, at: Location
+) -> Iterator[Mismatch]:
+    """Yield that a field is set to a list of another length, or with an item of another type.
+
+    Up to Iron the setters of rclpy check both. From Jazzy on they convert numbers to floats, and
+    refuse only what is no number, or a float among integers where the length is not fixed. That an
+    integer is given for a float is a warning where no release is stated.
+    """
+    kind, owner = field.type, f"the field {field.name} of {shown} is {_type_in_words(field.type)}"
+    if not kind.is_list:
+        if not kind.package and kind.name not in TEXTS:
+            yield Mismatch(FIELD_VALUE, f"{owner}; it is set to a list", at)
+        return
+    if kind.size is not None:
+        is_wrong = len(items) > kind.size if kind.is_bounded else len(items) != kind.size
+        if is_wrong:
+            most = "at most " if kind.is_bounded else ""
+            message = f"{owner} with {most}{kind.size} items; it is set to a list of {len(items)}"
+            yield Mismatch(FIELD_VALUE, message, at)
+            return
+    for item in items:
+        if not isinstance(item, bool | int | float | str) or _fits_item(kind, item):
+            continue
+        message = f"{owner}; an item is {_in_words(item)}"
+        is_certain, releases = _is_refused(kind, item, workspace.releases), workspace.releases
+        if not is_certain and releases and not {*releases} & {*_CHECKING}:
+            continue
+        if not is_certain:
+            message += ", which rclpy refuses up to Iron"
+        yield Mismatch(FIELD_VALUE, message, at, is_certain=is_certain)
+        return
+
+
+def _fits_item(kind: FieldType, item: Value) -> bool:
+    """Return whether a list of a type certainly takes an item in all releases."""
+    if kind.package or kind.name in _OPEN_ITEMS:
+        return True
+    return isinstance(item, _type_of(kind))  # a bool is an int for rclpy, too
+
+
+def _is_refused(kind: FieldType, item: Value, releases: tuple[Release, ...]) -> bool:
+    """Return whether rclpy certainly refuses an item of another type, in all stated releases."""
+    if releases and all(release in _CHECKING for release in releases):
+        return not isinstance(item, bool)  # an integer
+    is_text = isinstance(item, str)
+    if kind.name in TEXTS or is_text:
+        return is_text != (kind.name in TEXTS)
+    is_fixed = kind.size is not None and not kind.is_bounded
+    return kind.name in INTEGERS and isinstance(item, float) and not is_fixed
+
+
+def _in_words(value: Value) -> str:
+    kinds = {bool: "a boolean", int: "an integer", float: "a float", str: "a text"}
+    if value is None:
+        return "None"
+    return f"{str(value)[:20]!r}, {kinds[type(value)]}"
+
+
+def _fits(kind: FieldType, value: Value, releases: tuple[Release, ...]) -> bool:
+    """Return whether a field may be set to a value; whether it is not is certain.
+
+    From Jazzy on the setters check nothing, and the value is converted when the message is sent: 0
+    then stands for 0.0 and False by chance.
+    """
+    if kind.package:
+        return False
+    if kind.is_list:
+        return isinstance(value, str)  # text is a list of bytes for some
+    is_checked = bool(releases) and all(release in _CHECKING for release in releases)
+    is_zero = type(value) is int and value == 0
+    if is_zero and not is_checked:
+        return kind.name not in TEXTS
+    return isinstance(value, _type_of(kind))
+
+
+def _type_of(kind: FieldType) -> type:
+    """Return the type of Python that a plain field has; object for one of several."""
+    if kind.name in BOOLEANS:
+        return bool
+    if kind.name in FLOATS:
+        return float
+    if kind.name in INTEGERS - {"char"}:
+        return int
+    if kind.name in TEXTS:
+        return str
+    return object

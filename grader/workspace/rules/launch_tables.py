@@ -1,0 +1,24 @@
+"""Tables of parameters in launch files in Python that are no dictionaries."""
+
+from collections.abc import Iterator
+
+from grader.base.text import cut, quoted
+from grader.ros.launch.parameter_sets import may_have_sets, parameter_sets
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch
+from grader.workspace.rules.rule_table import PARAMETER_TABLE
+
+_MAX_SHOWN = 60  # characters of a set
+
+
+def launch_table_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the sets among the parameters of a node in a launch file: they set no parameter."""
+    for package in workspace.packages:
+        for source in filter(may_have_sets, workspace.texts.launch_sources(package)):
+            yield Compared("parameters")
+            for table in parameter_sets(source):
+                message = (
+                    f"{quoted(cut(table.text, _MAX_SHOWN))} is a set, which launch_ros takes for "
+                    "the path of a file, so it sets no parameter: write a dictionary, with colons"
+                )
+                yield Mismatch(PARAMETER_TABLE, message, table.location)

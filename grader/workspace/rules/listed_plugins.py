@@ -1,0 +1,42 @@
+"""Plugins of Nav2 that a parameter file configures: whether a list of the node names them."""
+
+from collections.abc import Iterator
+
+from grader.base.text import quoted
+from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.config.yaml_values import sections_in
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Fact, Mismatch, warning
+from grader.workspace.rules.rule_table import PLUGIN_LISTED
+
+_COSTMAPS = ("global_costmap", "local_costmap")
+_LISTS = ("plugins", "filters")
+_COPIED = ("local_costmap", "static_layer")
+
+
+def listed_plugin_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the layers of costmaps that are configured, and that no list of plugins names.
+
+    The parameters of nav2_bringup, which many copy, have a static layer in the local costmap.
+    """
+    for _, tree in workspace.installed.trees:
+        for keys, section in sections_in(tree):
+            if keys and keys[-1] in _COSTMAPS:
+                yield from _unlisted(keys[-1], section)
+
+
+def _unlisted(costmap: str, section: YamlNode) -> Iterator[Mismatch]:
+    """Yield the sections with a plugin that is in no list of a costmap."""
+    plugins = section.get("plugins")
+    if plugins is None or not plugins.items:
+        return
+    listed = set()
+    for key in _LISTS:
+        names = section.get(key)
+        listed |= {name.text for name in (names.items if names is not None else ())}
+    for name, inner in section.pairs:
+        kind = inner.get("plugin")
+        is_copied = (costmap, name) == _COPIED
+        if kind is not None and name not in listed and not is_copied:
+            message = f"the {costmap} does not use {quoted(name)}: its plugins do not name it"
+            yield warning(PLUGIN_LISTED, message, kind.location, plugins.location)

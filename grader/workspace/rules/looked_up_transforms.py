@@ -1,0 +1,104 @@
+"""Transforms that own nodes look up between frames that are there, and that nothing connects."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.known.gazebo_rows import gazebo
+from grader.workspace.graph.code_ends import frames_of
+from grader.workspace.graph.gazebo_topics import roots, system_of
+from grader.workspace.graph.graph import graph_of
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.frames import openings
+from grader.workspace.rules.names import Compared, Mismatch, warning
+from grader.workspace.rules.rule_table import TRANSFORM_CONNECTED
+
+
+class _Lookup(NamedTuple):
+    """A transform that a node looks up."""
+
+    frames: tuple[str, str]
+    location: Location
+
+
+class _Trees:
+    """The frames that are published, and which of them transforms connect."""
+
+    def __init__(self) -> None:
+        self._number: dict[str, int] = {}
+        self._members: list[list[str]] = []
+
+    def connect(self, *frames: str) -> None:
+        """Add that there are transforms between frames."""
+        for frame in frames:
+            if frame not in self._number:
+                self._number[frame] = len(self._members)
+                self._members.append([frame])
+            first, second = sorted((self._number[frames[0]], self._number[frame]))
+            if first != second:
+                moved = self._members[second]
+                self._members[second] = []
+                self._members[first] += moved
+                self._number.update(dict.fromkeys(moved, first))
+
+    def are_apart(self, one: str, other: str) -> bool:
+        """Return whether two frames are published, and not connected."""
+        numbers = self._number.get(one), self._number.get(other)
+        return None not in numbers and numbers[0] != numbers[1]
+
+
+def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
+    """Yield the transforms that are looked up between frames that nothing connects.
+
+    Launch files publish the frames, and certainly nothing that these start connects them. A
+    program in another terminal may publish other frames, such as the map, and is not likely to
+    connect these.
+    """
+    lookups = [*_lookups(workspace)]
+    if not lookups or any(fact.kind == "frame" for fact in openings(workspace)):
+        return
+    trees = _published(workspace)
+    if trees is None:
+        return
+    yield Compared("transforms")
+    for lookup in lookups:
+        target, source = lookup.frames
+        if trees.are_apart(target, source):
+            message = (
+                f"nothing that is started connects {quoted(target)} and {quoted(source)}, so this "
+                "lookup fails"
+            )
+            at = lookup.location
+            yield warning(TRANSFORM_CONNECTED, message, at)._replace(names=(target, source))
+
+
+def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
+    """Yield what nodes that are certainly started look up, where both frames are known."""
+    for _, node in workspace.launches.nodes:
+        if node.when is not True:
+            continue
+        by_call: dict[Location, list[str]] = {}
+        for name, frame in frames_of(workspace, node):
+            if frame.lookup is not None:
+                by_call.setdefault(frame.lookup, []).append((name or "").removeprefix("/"))
+        for at, names in by_call.items():
+            if len(names) == 2:
+                yield _Lookup((names[0], names[1]), at)
+
+
+def _published(workspace: Workspace) -> _Trees | None:
+    """Return what launch files publish, whatever conditions say; None where that is not known."""
+    systems = gazebo().odometry_systems
+    if any(
+        system_of(plugin) in systems
+        for root, _ in roots(workspace)
+        for plugin in root.iter("plugin")
+    ):
+        return None
+    trees = _Trees()
+    for edge in graph_of(workspace).edges:
+        if not edge.is_known:
+            return None
+        trees.connect(edge.parent.removeprefix("/"), edge.child.removeprefix("/"))
+    return trees

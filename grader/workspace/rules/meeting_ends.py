@@ -1,0 +1,182 @@
+"""Topics, services and actions whose ends meet, and whether these agree.
+
+They agree in type and quality of service.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from grader.ros.nodes.node_facts import EndpointKind
+from grader.workspace.graph.bridge_rows import BRIDGE, BridgeRow
+from grader.workspace.graph.code_ends import End, EndSource
+from grader.workspace.graph.graph import Graph, distinct, graph_of
+from grader.workspace.graph.node_ends import deciding_parameter
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.interfaces import is_absent
+from grader.workspace.rules.names import Compared, Fact, Mismatch
+from grader.workspace.rules.rule_table import SERVICE_TYPE, TOPIC_QUALITY, TOPIC_TYPE, Rule
+
+# What well-known programs subscribe to is compared by a rule of their topics.
+_ASKING: tuple[EndSource, ...] = ("code", "controller", "bridge")
+_OFFERING: tuple[EndSource, ...] = (*_ASKING, "program")
+
+
+class Meeting(NamedTuple):
+    """A kind of ends that ask for another kind, and how the two are called."""
+
+    asking: EndpointKind
+    offering: EndpointKind
+    rule: Rule  # of its types
+    noun: str
+    is_asked: str  # the verb for an end that asks
+    is_offered: str
+
+    def ends(self, graph: Graph) -> tuple[list[End], list[End]]:
+        """Return the ends of own code and of controllers that ask, and those that offer."""
+        asking = distinct(graph.of_kind(self.asking))
+        return asking, distinct(graph.of_kind(self.offering))
+
+
+TOPICS = Meeting("subscription", "publisher", TOPIC_TYPE, "topic", "subscribed to", "published")
+SERVICES = (
+    Meeting("client", "service", SERVICE_TYPE, "service", "called", "served"),
+    Meeting("action client", "action server", SERVICE_TYPE, "action", "called", "served"),
+)
+
+
+class _Policy(NamedTuple):
+    """A policy of quality of service: what a subscription asks for, and what is not enough."""
+
+    name: str
+    asked: str
+    offered: str
+
+
+_POLICIES = (
+    _Policy("reliability", "reliable", "best_effort"),
+    _Policy("durability", "transient_local", "volatile"),
+)
+
+
+def meeting_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the ends that do not agree with another end of their name."""
+    graph = graph_of(workspace)
+    for meeting in (TOPICS, *SERVICES):
+        every_asking = distinct(graph.of_kind(meeting.asking, sources=_ASKING))
+        every_offering = distinct(graph.of_kind(meeting.offering, sources=_OFFERING))
+        is_compared = False
+        for asking, offering in graph.pairs(every_asking, every_offering):
+            if _is_of_other_rule(asking, offering):
+                continue
+            is_compared = True
+            if asking.source == "controller":
+                yield from _other_type_of_controller(asking, offering)
+            else:
+                yield from _other_type(workspace, meeting, asking, offering)
+                yield from _other_quality(asking, offering)
+        if is_compared:
+            yield Compared(meeting.rule.family)
+    yield from _other_type_of_bridge(graph)
+
+
+def _is_of_other_rule(asking: End, offering: End) -> bool:
+    """Return whether another rule compares two ends.
+
+    Another rule is that of rows of bridges, also of those that nothing starts, or that of the
+    parameters of programs.
+    """
+    if asking.source == "bridge":
+        return offering.source in ("bridge", "code")
+    if offering.source == "bridge":
+        return asking.source == "code"
+    is_command = asking.source == "controller" and offering.source == "program"
+    return is_command and deciding_parameter(offering) is not None
+
+
+def _differ(asking: End, offering: End) -> bool:
+    """Return whether the types of two ends are known, and not the same."""
+    types = {asking.type, offering.type}
+    return None not in types and len(types) == 2
+
+
+def _other_type(
+    workspace: Workspace, meeting: Meeting, asking: End, offering: End
+) -> Iterator[Mismatch]:
+    """Yield that an end of own code or a bridge asks for another type than is offered.
+
+    Of a type that is nowhere, that is said instead.
+    """
+    if not _differ(asking, offering):
+        return
+    if any(is_absent(workspace, end.type or "") for end in (asking, offering)):
+        return
+    by = f" by {offering.owner}" if offering.source == "program" else ""
+    message = (
+        f"the {meeting.noun} {asking.name} is {meeting.is_asked} with {asking.type}, but "
+        f"{meeting.is_offered} with {offering.type}{by} ({offering.location.file_and_line})"
+    )
+    yield Mismatch(
+        meeting.rule,
+        message,
+        asking.location,
+        offering.location,
+        is_certain=asking.surely_meets(offering),
+    )
+
+
+def _other_type_of_controller(asking: End, offering: End) -> Iterator[Mismatch]:
+    """Yield that a topic is published with another type than a controller reads."""
+    if _differ(asking, offering):
+        message = (
+            f"the topic {offering.name} is published with {offering.type}, but the controller "
+            f"subscribes to it with {asking.type} ({asking.location.file_and_line})"
+        )
+        yield Mismatch(
+            TOPIC_TYPE,
+            message,
+            offering.location,
+            asking.location,
+            is_certain=asking.surely_meets(offering),
+        )
+
+
+def _other_quality(asking: End, offering: End) -> Iterator[Mismatch]:
+    """Yield the policies of a publisher that do not satisfy a subscription: no message arrives."""
+    if asking.kind != "subscription":
+        return
+    for policy in _POLICIES:
+        asked = getattr(asking.endpoint.qos, policy.name)
+        offered = getattr(offering.endpoint.qos, policy.name)
+        if (asked, offered) == (policy.asked, policy.offered):
+            message = (
+                f"the subscription of {asking.name} asks for {asked}, but its publisher is "
+                f"{offered} ({offering.location.file_and_line})"
+            )
+            is_certain = asking.surely_meets(offering)
+            wrong = Mismatch(TOPIC_QUALITY, message, asking.location, offering.location, is_certain)
+            yield wrong._replace(names=(asking.name,))
+
+
+def _other_type_of_bridge(graph: Graph) -> Iterator[Mismatch]:
+    """Yield topics that own code and a row of a bridge open with different types.
+
+    A row of a file that no launch file names counts too, as far as all bridges keep their names.
+    """
+    bridges = [node for _, node in graph.workspace.launches.nodes if node.package == BRIDGE]
+    is_plain = all(node.remaps == () and node.namespace in ("", "/") for node in bridges)
+    if not bridges or not is_plain:
+        return
+    ends = distinct(graph.of_kind("subscription", "publisher", sources=("code",)))
+    for end, row in graph.bridged(ends):
+        if end.type not in (None, row.ros_type):
+            yield _other_type_in_row(end, row)
+
+
+def _other_type_in_row(end: End, row: BridgeRow) -> Mismatch:
+    verb = "published" if row.is_published else "subscribed to"
+    message = (
+        f"the topic {end.name} has {end.type} here, but is {verb} by the bridge with "
+        f"{row.ros_type} ({row.location.file_and_line})"
+    )
+    is_certain = row.is_used and end.is_certain
+    return Mismatch(TOPIC_TYPE, message, end.location, row.location, is_certain)

@@ -1,0 +1,108 @@
+"""Time stamps of messages and transforms that own code sends, where what reads them compares times.
+
+Only code that never names a stamp, and makes its messages itself, surely sends none.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+
+from grader.base.source import Location, Source
+from grader.ros.known.package_rows import package_row
+from grader.ros.launch.launch_model import STATE_PUBLISHER
+from grader.workspace.graph.code_ends import End
+from grader.workspace.graph.graph import Graph, graph_of
+from grader.workspace.model.code_text import code_alone
+from grader.workspace.model.own_code import CPP_ENDINGS
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.rule_table import MESSAGE_STAMP
+
+_STAMPED = frozenset(
+    {
+        *("sensor_msgs.msg.JointState", "sensor_msgs.msg.LaserScan", "sensor_msgs.msg.Imu"),
+        *("sensor_msgs.msg.PointCloud2", "nav_msgs.msg.Odometry"),
+    }
+)
+# What may set a stamp: its name, or a header as a whole; a file of a type does not.
+_MAY_SET = re.compile(r"stamp(?!ed\.h)|[Hh]eader\b(?!\s*+\.\s*+frame_id\b)")
+# Of robot_state_publisher: whether it publishes what is older than what it published last.
+_IGNORES = "ignore_timestamp"
+
+
+def message_stamp_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield messages and transforms without a stamp.
+
+    robot_state_publisher publishes no transform for joint states that are as old as the last ones,
+    and tf2 ignores transforms with the stamp of one that it has.
+    """
+    sources = _CodeSources(workspace)
+    yield from _of_messages(graph_of(workspace), sources)
+    for code in workspace.code.by_package.values():
+        for node in code.nodes:
+            for transform in node.transforms:
+                if transform.is_static:
+                    continue
+                yield Compared("messages")
+                if sources.lack_stamps(transform.location, "TransformStamped"):
+                    message = (
+                        "the transform has no stamp, and tf2 ignores all after the first one: set "
+                        "header.stamp to the time of the node's clock"
+                    )
+                    yield warning(MESSAGE_STAMP, message, transform.location)
+                    break
+
+
+def _of_messages(graph: Graph, sources: "_CodeSources") -> Iterator[Mismatch]:
+    """Yield the publishers of messages without a stamp, which a program needs."""
+    said = set[Location]()
+    publishers = [end for end in graph.certain("publisher", "code") if end.type in _STAMPED]
+    for sent, read in graph.pairs(publishers, graph.certain("subscription", "program")):
+        at, name = sent.location, (sent.type or "").rpartition(".")[2]
+        if at in said or read.type != sent.type or not _compares_times(read):
+            continue
+        if not _passes_on(graph, sent) and sources.lack_stamps(at, name):
+            said.add(at)
+            message = (
+                f"the {name} has no stamp, so {read.node.executable} does not use it: set "
+                "header.stamp to the time of the node's clock"
+            )
+            yield warning(MESSAGE_STAMP, message, at, read.location)
+
+
+def _compares_times(end: End) -> bool:
+    """Return whether a program certainly compares the times of messages."""
+    if end.node.executable != STATE_PUBLISHER:
+        return package_row(end.node.package).compares_time
+    for given in end.node.parameters or ():
+        if given.path or given.unknown or _IGNORES in given.values:
+            return False
+    return end.node.parameters is not None
+
+
+def _passes_on(graph: Graph, sent: End) -> bool:
+    """Return whether a node may publish messages that it receives."""
+    received = graph.of_kind("subscription")
+    return any(end.node is sent.node and end.type == sent.type for end in received)
+
+
+class _CodeSources:
+    """The code of packages by the paths of its files."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
+        self._sources: Mapping[str, Source] | None = None
+
+    def lack_stamps(self, at: Location, name: str) -> bool:
+        """Return whether a file makes messages of a type, and sets no stamp."""
+        if self._sources is None:
+            by_path: dict[str, Source] = {}
+            for package in self._workspace.packages:
+                for source in self._workspace.texts.sources_of(package, (".py", *CPP_ENDINGS)):
+                    by_path[source.path] = source
+            self._sources = by_path
+        code_file = self._sources.get(at.path)
+        if code_file is None:
+            return False
+        code = code_alone(code_file.text, code_file.path)
+        made = rf"\b{name}\s*+\(" if at.path.endswith(".py") else rf"\b{name}\s++\w++\s*+[;{{(]"
+        return not _MAY_SET.search(code) and re.search(made, code) is not None

@@ -1,0 +1,44 @@
+"""Joints in <ros2_control> that mimic others: hardware_interface refuses commands of them."""
+
+from collections.abc import Iterator
+
+from grader.ros.known.releases import RELEASES
+from grader.ros.xml.parsing import Element
+from grader.workspace.model.known_robots import KnownRobot
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch
+from grader.workspace.rules.rule_table import MIMIC_COMMAND
+
+# Since this one, hardware_interface reads <mimic>: src/component_parser.cpp of ros2_control.
+_SINCE = RELEASES.index("jazzy")
+_FALSE = ("false", "False", "0")
+
+
+def mimic_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the command interfaces of joints with <mimic>, unless they say mimic="false".
+
+    It is certain for the stated releases, all of which refuse them.
+    """
+    places = [RELEASES.index(release) for release in workspace.releases]
+    if places and max(places) < _SINCE:
+        return
+    is_certain = bool(places) and min(places) >= _SINCE
+    for robot in workspace.robots.known:
+        mimics = {joint.name for joint in robot.robot.joints if joint.mimic is not None}
+        for system in robot.systems:
+            yield Compared("controllers")
+            for joint in system.iterchildren("joint"):
+                if joint.get("name", "") in mimics:
+                    yield from _commands_of(robot, joint, is_certain=is_certain)
+
+
+def _commands_of(robot: KnownRobot, joint: Element, *, is_certain: bool) -> Iterator[Mismatch]:
+    interface = next(joint.iterchildren("command_interface"), None)
+    if interface is not None and joint.get("mimic") not in _FALSE:
+        name = joint.get("name", "")
+        since = "" if is_certain else "from Jazzy on, "
+        message = (
+            f"{since}ros2_control loads no robot with a command interface of {name!r}, whose joint "
+            'mimics another one: remove it, or write mimic="false"'
+        )
+        yield Mismatch(MIMIC_COMMAND, message, robot.place(interface), is_certain=is_certain)

@@ -1,0 +1,232 @@
+"""Topics, services and actions without another end, where a similar or fitting one is free."""
+
+from collections.abc import Collection, Iterator, Sequence
+from typing import NamedTuple
+
+from grader.base.names import closest
+from grader.base.source import Location
+from grader.ros.known.shared_names import shared_names
+from grader.workspace.graph.bridge_rows import BRIDGE, bridge_rows
+from grader.workspace.graph.code_ends import End
+from grader.workspace.graph.graph import Graph, graph_of, grouped
+from grader.workspace.graph.unread_ends import (
+    Sought,
+    is_all_read,
+    is_own_type,
+    may_be_opened,
+)
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.meeting_ends import SERVICES, TOPICS, Meeting
+from grader.workspace.rules.names import (
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Use,
+    corrections,
+)
+from grader.workspace.rules.rule_table import (
+    SERVICE_SERVED,
+    TOPIC_PUBLISHED,
+    TOPIC_SUBSCRIBED,
+    Rule,
+)
+
+
+class _Offer(NamedTuple):
+    """A topic that something publishes in a launch, by its name and its type."""
+
+    topic: str
+    type: str | None
+    location: Location
+    launch: int  # -1 for a row of a bridge that no launch file starts
+
+
+def missing_end_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the ends that nothing answers, where what they surely mean waits under another name."""
+    graph = graph_of(workspace)
+    subscriptions, publishers = TOPICS.ends(graph)
+    yield from _without_publisher(graph, subscriptions, publishers)
+    yield from _without_subscription(graph, subscriptions, publishers)
+    for meeting in SERVICES:
+        yield from _without_server(graph, meeting)
+
+
+def _without_publisher(
+    graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
+) -> Iterator[Fact]:
+    """Yield subscriptions to unpublished topics where a similar one is published.
+
+    The similar topic is one that is not subscribed to.
+    """
+    workspace = graph.workspace
+    offers = [*_offers(workspace, publishers)]
+    offered = {offer.topic for offer in offers}
+    offered |= {end.name for end in graph.of_kind("publisher", sources=("program",))}
+    subscribed = {end.name for end in subscriptions}
+    unused = [offer for offer in offers if offer.topic not in subscribed]
+    yield Open("topic")
+    for offer in unused:
+        yield Definition("topic", offer.topic, offer.location)
+    by_type = grouped(unused, lambda offer: offer.type)
+    for end in subscriptions:
+        if end.name not in offered and end.source != "controller":
+            yield from _similar_topic(workspace, end, by_type.get(end.type, ()))
+
+
+def _offers(workspace: Workspace, publishers: Sequence[End]) -> Iterator[_Offer]:
+    """Yield what own code, controllers and bridges publish."""
+    for end in publishers:
+        yield _Offer(end.name, end.type, end.location, end.launch)
+    launches = {
+        launch for launch, node in workspace.launches.launched if node.package == BRIDGE
+    } or {-1}
+    for row in bridge_rows(workspace):
+        if row.is_published:
+            for launch in launches:
+                yield _Offer(f"/{row.ros}", row.ros_type, row.location, launch)
+
+
+def _similar_topic(workspace: Workspace, end: End, alike: Sequence[_Offer]) -> Iterator[Fact]:
+    """Yield the topic that a subscription surely means, of those of its type.
+
+    Else yield that it uses its own, to which a similar name may be a correction.
+    """
+    workspace.charge(len(alike))
+    places = {offer.topic: offer.location for offer in alike if offer.launch == end.launch}
+    meant = closest(end.name, places)
+    is_one = len(places) == 1 or is_own_type(workspace, end.type)
+    if meant is None or not is_one or _may_be_published(workspace, end):
+        yield Use("topic", end.name, end.location, "create_subscription")
+    elif not any(end.node.topic(rule[1]) == meant for rule in end.node.remaps or ()):
+        # Else it is a remapping of another name, which is said of it.
+        yield _no_other_end(
+            TOPIC_PUBLISHED, f"nothing publishes {end.name}", end, meant, places[meant]
+        )
+
+
+def _may_be_published(workspace: Workspace, end: End) -> bool:
+    """Return whether a topic may be published: by what is not read, or as names in files say."""
+    if may_be_opened(workspace, Sought("publisher", end.name, end.type)):
+        return True
+    if is_own_type(workspace, end.type):
+        return False
+    name, last = end.name.strip("/"), end.name.rpartition("/")[2]
+    if last in shared_names().topics or name.partition("/")[0] in workspace.installed.controllers:
+        return True
+    # A parameter, or a remapping of a plugin, may name what something publishes.
+    texts = [tree.source.text for _, tree in workspace.installed.trees]
+    for robot in workspace.robots.known:
+        texts += [tag.text or "" for tag in robot.root.iter("remapping", "ros_topic")]
+    return any(name in text for text in texts)
+
+
+def _no_other_end(rule: Rule, what: str, end: End, meant: str, at: Location) -> Mismatch:
+    """Return that an end has no other one, and the name that it surely means."""
+    message = f"{what}; did you mean {meant} ({at.file_and_line})?"
+    either = corrections(end.name, end.location, meant, at)
+    return Mismatch(rule, message, end.location, at, corrections=either)
+
+
+def _without_subscription(
+    graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
+) -> Iterator[Mismatch]:
+    """Yield publishers that nothing subscribes to, where a controller waits on another topic.
+
+    The controller waits for such messages there.
+
+    It is certain where one launch file starts both, and all of its topics are read. A publisher of
+    the same name may be meant for a controller of Gazebo in another namespace.
+    """
+    of_code = [end for end in publishers if end.source == "code"]
+    subscribed = {end.name for end in subscriptions}
+    published = {end.name for end in of_code}
+    unheard = [end for end in of_code if end.name not in subscribed]
+    named: set[Location] = set()
+    for waiting in subscriptions:
+        if waiting.source == "controller" and waiting.name not in published:
+            yield from _meant_for(graph, waiting, unheard, named)
+
+
+def _meant_for(
+    graph: Graph, waiting: End, unheard: Sequence[End], named: set[Location]
+) -> Iterator[Mismatch]:
+    """Yield the publishers that mean the topic of a controller; `named` are those of others."""
+    fitting = graph.alike(waiting, unheard)
+    for publisher in fitting:
+        if publisher.location in named:
+            continue
+        mismatch = _unheard(graph.workspace, publisher, waiting, is_only=len(fitting) == 1)
+        if mismatch is not None:
+            named.add(publisher.location)
+            yield mismatch
+
+
+def _unheard(
+    workspace: Workspace, publisher: End, waiting: End, *, is_only: bool
+) -> Mismatch | None:
+    """Return that a publisher means the topic on which a controller waits.
+
+    The result is None where that is not known.
+    """
+    if _may_be_of_gazebo(workspace, publisher, waiting):
+        return None
+    at, place = publisher.location, waiting.location
+    is_certain = publisher.surely_meets(waiting) and is_all_read(workspace, waiting.launch)
+    is_same = _last_names(publisher, 1) == _last_names(waiting, 1)
+    if not is_same and not (is_certain and is_only):
+        return None
+    message = (
+        f"nothing subscribes to {publisher.name}; did you mean {waiting.name} "
+        f"({place.file_and_line})?"
+    )
+    return Mismatch(TOPIC_SUBSCRIBED, message, at, place, is_certain)
+
+
+def _last_names(end: End, count: int) -> list[str]:
+    """Return the last parts of the name of a topic."""
+    return end.name.split("/")[-count:]
+
+
+def _may_be_of_gazebo(workspace: Workspace, publisher: End, waiting: End) -> bool:
+    """Return whether Gazebo may have the same controller in another namespace."""
+    is_same = _last_names(publisher, 2) == _last_names(waiting, 2)
+    return is_same and workspace.robots.has_controllers_in_gazebo
+
+
+def _without_server(graph: Graph, meeting: Meeting) -> Iterator[Mismatch]:
+    """Yield that nothing serves what a client calls, where a server waits under another name.
+
+    The server has the type of the client, and there is one such name only. It is certain where
+    the nodes of both certainly are started.
+    """
+    clients, servers = meeting.ends(graph)
+    called = {end.name for end in clients}
+    served = {end.name for end in servers}
+    uncalled = [end for end in servers if end.name not in called]
+    for client in clients:
+        if client.name not in served and client.type is not None:
+            yield from _served_elsewhere(graph, meeting, client, uncalled)
+
+
+def _served_elsewhere(
+    graph: Graph, meeting: Meeting, client: End, uncalled: Sequence[End]
+) -> Iterator[Mismatch]:
+    """Yield that the server of a client's type waits under one other name."""
+    alike = {end.name: end for end in reversed(graph.alike(client, uncalled))}
+    if len(alike) != 1 or _may_be_served(graph.workspace, meeting, client, alike):
+        return
+    [(meant, server)] = alike.items()
+    what = f"nothing serves the {meeting.noun} {client.name}"
+    mismatch = _no_other_end(SERVICE_SERVED, what, client, meant, server.location)
+    yield mismatch._replace(is_certain=client.is_certain and server.is_certain)
+
+
+def _may_be_served(
+    workspace: Workspace, meeting: Meeting, client: End, names: Collection[str]
+) -> bool:
+    """Return whether a client may mean another server than those of some names."""
+    is_meant = is_own_type(workspace, client.type) or closest(client.name, names) is not None
+    if not is_meant:
+        return True
+    return may_be_opened(workspace, Sought(meeting.offering, client.name, client.type))

@@ -1,0 +1,354 @@
+"""Join the names that files define with those that they use.
+
+A name that is used has to be defined somewhere.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
+from itertools import chain
+from typing import NamedTuple
+
+from grader.base.names import are_of_one_side, closest, near
+from grader.base.problems import NO_FIXES, Fixes
+from grader.base.source import Location
+from grader.base.text import counted, quoted
+from grader.workspace.graph.compared_robots import ComparedRobots
+from grader.workspace.rules.rule_table import DEFINED, FAMILIES, AnyFamily, DefinedKind, Rule
+
+_MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either way
+
+
+class Definition(NamedTuple):
+    """A name that a file defines.
+
+    Those of one kind agree within one owner only, such as the arguments of a file. What is of one
+    of several robots has the path of that robot.
+    """
+
+    kind: DefinedKind
+    name: str
+    location: Location
+    owner: str = ""
+    robot: str = ""
+
+
+class Use(NamedTuple):
+    """A name that a file uses, and what the file calls it.
+
+    Where it is `optional`, only a similar name is wrong. It does not stand for one that is `taken`,
+    such as another entry of the list that it is in, nor for that of another robot than `robots`.
+    """
+
+    kind: DefinedKind
+    name: str
+    location: Location
+    said: str
+    owner: str = ""
+    optional: bool = False
+    taken: frozenset[str] = frozenset()
+    robots: ComparedRobots | None = None  # None for all
+
+
+class Open(NamedTuple):
+    """That names of a kind may be defined elsewhere.
+
+    They may be defined by what is not in the workspace, or, for a reason, by what is not
+    evaluated.
+    """
+
+    kind: DefinedKind
+    owner: str = ""
+    reason: str = ""
+
+
+class Pattern(NamedTuple):
+    """That names of a kind may be defined that are not known; * stands for a part of them."""
+
+    kind: DefinedKind
+    pattern: str
+
+
+class Correction(NamedTuple):
+    """Another name in a file.
+
+    The old one is at a place, behind it in the same element, or the key before it.
+    """
+
+    location: Location
+    old: str
+    new: str
+
+
+class Mismatch(NamedTuple):
+    """Something that does not agree.
+
+    It is a warning, and fails no criterion, unless it certainly fails at run time.
+    """
+
+    rule: Rule
+    message: str
+    location: Location
+    related: Location | None = None  # of what was meant
+    is_certain: bool = True
+    corrections: tuple[
+        Correction, ...
+    ] = ()  # with each of which it agrees: first of the use, then of the definition
+    fixes: Fixes = NO_FIXES  # of what is no name
+    word: str = ""  # that is wrong, in the call or element at the location
+    cause: str = ""  # what it has in common with others that one mistake makes
+    lacked: str = ""  # the package that package.xml lacks, and is to be added
+    tag: str = "exec_depend"  # with which package.xml is to declare that package
+    names: tuple[str, ...] = ()  # by which a message of a log may mean it
+
+    @property
+    def family(self) -> AnyFamily:
+        """The family of names_agree to which the rule belongs."""
+        return self.rule.family
+
+
+def warning(rule: Rule, message: str, at: Location, related: Location | None = None) -> Mismatch:
+    """Return something that does not agree, and may be meant so."""
+    return Mismatch(rule, message, at, related, is_certain=False)
+
+
+class Compared(NamedTuple):
+    """That something of a family is there to be compared; of a file its path below the prefix."""
+
+    family: AnyFamily
+    name: str = ""
+
+
+class Undecided(NamedTuple):
+    """That the names of a family are not compared, and why."""
+
+    family: AnyFamily
+    reason: str
+
+
+class Counted(NamedTuple):
+    """How many names of a family are compared with a counterpart, and why not all are known."""
+
+    family: AnyFamily
+    compared: int
+    total: int
+    reason: str = ""  # empty where all names are known
+
+    @property
+    def words(self) -> str:
+        """Return the count, where some names are not known; else an empty text."""
+        if not self.reason:
+            return ""
+        if not self.total:
+            return f"no name compared: {self.reason}"
+        return f"{self.compared} of {counted(self.total, 'name')} compared: {self.reason}"
+
+
+Fact = Definition | Use | Open | Pattern | Mismatch | Compared | Undecided | Counted
+
+
+class Agreement(NamedTuple):
+    """What does not agree in a workspace, and for each family why something is not known."""
+
+    mismatches: tuple[Mismatch, ...]
+    undecided: Mapping[AnyFamily, str]
+    families: frozenset[AnyFamily]  # of which something is compared
+    files: frozenset[str]  # the paths below the prefix at which files are looked for
+    counts: Mapping[AnyFamily, Counted]
+    unused: tuple[Location, ...] = ()  # the files that no other one names
+
+    def holds(self, family: AnyFamily) -> bool:
+        """Return whether something of a family is compared, and all of it certainly agrees."""
+        is_wrong = any(
+            mismatch.family == family and mismatch.is_certain for mismatch in self.mismatches
+        )
+        return family in self.families and family not in self.undecided and not is_wrong
+
+
+def uncompared(facts: Iterable[Fact], reason: str) -> Agreement:
+    """Return the mismatches among facts that are not all known, and why no more is compared.
+
+    The reason is given for each family.
+    """
+    mismatches = [fact for fact in facts if isinstance(fact, Mismatch)]
+    families = frozenset(fact.family for fact in mismatches)
+    return Agreement(
+        _in_order(mismatches), dict.fromkeys(FAMILIES, reason), families, frozenset(), {}
+    )
+
+
+def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: None) -> Agreement:
+    """Return which of the names that are used are not defined, in the order of their places.
+
+    The work of comparing names is charged.
+    """
+    every = [*facts]
+    names = _DefinedNames(every)
+    mismatches = [fact for fact in every if isinstance(fact, Mismatch)]
+    counts = {fact.family: fact for fact in every if isinstance(fact, Counted)}
+    undecided = _undecided(every, counts.values())
+    compared, files = _compared(every)
+    for use in [fact for fact in every if isinstance(fact, Use)]:
+        family = DEFINED[use.kind].family
+        if names.compares(use):
+            compared.add(family)
+        charge(1 + len(names.patterns))
+        # A name in a file with which no robot has to do may be that of any robot.
+        is_open = use.robots is not None and not use.robots.robots
+        if is_open or names.holds(use) or names.may_hold(use):
+            continue
+        mismatches += _undefined(names, use, charge)
+        if names.why_open(use):
+            undecided.setdefault(family, names.why_open(use))
+    return Agreement(_in_order(mismatches), undecided, frozenset(compared), files, counts)
+
+
+def _undefined(
+    names: "_DefinedNames", use: Use, charge: Callable[[int], None]
+) -> Iterator[Mismatch]:
+    """Yield that a name is not defined, unless what is not known may define it."""
+    known = names.like(use)
+    if use.taken:
+        known = {name: at for name, at in known.items() if name not in use.taken}
+    charge(cost_of_guess(len(known)))
+    mismatch = _mismatch(use, known, is_open=names.are_open(use))
+    if mismatch is not None:
+        yield mismatch
+
+
+def _compared(facts: Iterable[Fact]) -> tuple[set[AnyFamily], frozenset[str]]:
+    """Return of which families something is compared, and the files that are looked for."""
+    families: set[AnyFamily] = set()
+    files: set[str] = set()
+    for fact in facts:
+        if isinstance(fact, Compared | Mismatch):
+            families.add(fact.family)
+        if isinstance(fact, Compared) and fact.name:
+            files.add(fact.name)
+    return families, frozenset(files)
+
+
+class _DefinedNames:
+    """The names that files define, and which others may be defined."""
+
+    def __init__(self, facts: Iterable[Fact]) -> None:
+        self.patterns: list[Pattern] = []
+        # By kind and owner; each name with the robots that have it, and the place in each.
+        self._known: dict[tuple[DefinedKind, str], dict[str, dict[str, Location]]] = {}
+        self._reasons: dict[tuple[DefinedKind, str], str] = {}  # why names are open
+        for fact in facts:
+            match fact:
+                case Definition():
+                    names = self._known.setdefault((fact.kind, fact.owner), {})
+                    names.setdefault(fact.name, {}).setdefault(fact.robot, fact.location)
+                case Open():
+                    before = self._reasons.get((fact.kind, fact.owner))
+                    self._reasons[fact.kind, fact.owner] = before or fact.reason
+                case Pattern():
+                    self.patterns.append(fact)
+
+    def like(self, use: Use) -> Mapping[str, Location]:
+        """Return the names that are defined of the kind, the owner and the robots of a use."""
+        similar: dict[str, Location] = {}
+        for name, places in self._known.get((use.kind, use.owner), {}).items():
+            for robot, place in places.items():
+                if use.robots is None or not robot or robot in use.robots.paths:
+                    similar.setdefault(name, place)
+        return similar
+
+    def compares(self, use: Use) -> bool:
+        """Return whether it is certain that a name is defined, or that it has to be."""
+        return self.holds(use) or not (use.optional or self.are_open(use))
+
+    def holds(self, use: Use) -> bool:
+        """Return whether a name is defined, by a robot that counts or by none."""
+        places = self._known.get((use.kind, use.owner), {}).get(use.name, {})
+        if use.robots is None or not use.robots.are_started:
+            return bool(places)
+        return "" in places or not use.robots.paths.isdisjoint(places)
+
+    def may_hold(self, use: Use) -> bool:
+        """Return whether a name is computed, or one that may be defined."""
+        possible = (each.pattern for each in self.patterns if each.kind == use.kind)
+        return "$" in use.name or any(fnmatchcase(use.name, pattern) for pattern in possible)
+
+    def are_open(self, use: Use) -> bool:
+        """Return whether other names of its kind may be defined."""
+        return (use.kind, use.owner) in self._reasons
+
+    def why_open(self, use: Use) -> str:
+        """Return why names of its kind are not evaluated; empty where they are, or need not be."""
+        return self._reasons.get((use.kind, use.owner), "")
+
+
+def _in_order(mismatches: Iterable[Mismatch]) -> tuple[Mismatch, ...]:
+    """Return mismatches, each once, in the order of their places."""
+    by_place: dict[tuple[str, int, int], list[Mismatch]] = {}
+    for mismatch in dict.fromkeys(mismatches):
+        at = mismatch.location
+        by_place.setdefault((at.path, at.line, at.column), []).append(mismatch)
+    return tuple(chain.from_iterable(by_place[place] for place in sorted(by_place)))
+
+
+def cost_of_guess(known: int) -> int:
+    """Return the parts of comparing a name with as many known ones.
+
+    The most similar text is searched among the first of them.
+    """
+    return 3 * min(known, _MAX_NEAR) + 20 * min(known, _MAX_SIMILAR)
+
+
+def _undecided(facts: Sequence[Fact], counts: Iterable[Counted]) -> dict[AnyFamily, str]:
+    """Return the families whose names are not compared, and why: the first reason of each."""
+    undecided: dict[AnyFamily, str] = {
+        fact.family: fact.reason for fact in reversed(facts) if isinstance(fact, Undecided)
+    }
+    for count in counts:
+        if count.reason and not count.compared:
+            undecided.setdefault(count.family, count.words)
+    return undecided
+
+
+def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mismatch | None:
+    """Return what is wrong with a name that is not defined, as far as it is known what is."""
+    meant = near(use.name, known, "link" if use.kind == "frame" else use.kind)
+    if meant is None and not is_open:
+        meant = closest(use.name, known, is_clear=True)
+    if meant is None and (is_open or use.optional):
+        return None
+    where = use.robots.words if use.robots is not None else ""
+    message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{where}"
+    related = None
+    if meant is not None:
+        related = known[meant]
+        message = f"{message}; did you mean {quoted(meant)} ({related.file_and_line})?"
+    either = corrections(use.name, use.location, meant, related)
+    rule = DEFINED[use.kind]
+    return Mismatch(rule, message, use.location, related, not is_open, either, word=use.name)
+
+
+def among(fact: Fact, compared: ComparedRobots) -> Fact:
+    """Return a fact in which a name is compared with those of some robots.
+
+    A joint is one of the robots that are started. A frame may be published by what is not read, so
+    that it is right if any robot has it.
+    """
+    if not isinstance(fact, Use):
+        return fact
+    if fact.kind != "joint":
+        compared = compared._replace(are_started=False)
+    return fact._replace(robots=compared)
+
+
+def corrections(
+    name: str, at: Location, meant: str | None, defined: Location | None = None
+) -> tuple[Correction, ...]:
+    """Return that a name becomes the one that is meant, or the reverse.
+
+    There are none for names of two sides or numbers.
+    """
+    if meant is None or not (are_of_one_side(name, meant) or near(name, [meant])):
+        return ()
+    return (
+        Correction(at, name, meant),
+        *([Correction(defined, meant, name)] if defined is not None else []),
+    )

@@ -1,0 +1,57 @@
+"""Namespaces: parameter files whose keys are of another namespace than the node that gets them."""
+
+from collections.abc import Iterator, Mapping
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.config.yaml_values import keys_of_sections
+from grader.ros.known.package_rows import package_row
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.node_parameters import is_key_of
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch
+from grader.workspace.rules.rule_table import (
+    PARAMETER_NAMESPACE,
+)
+
+
+def namespace_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the parameter files that have a section of a node's name, not in its namespace.
+
+    rcl compares the full names, so the node gets none of its parameters.
+    """
+    for path, nodes in workspace.parameters.files.items():
+        tree = workspace.installed.yaml.get(path)
+        if isinstance(tree, YamlNode):
+            keys = keys_of_sections(tree)
+            said: set[Location] = set()  # of several nodes that do not get a section, the first
+            for node in nodes:
+                workspace.charge(1 + len(keys))
+                for fact in _other_namespace(workspace, tree, node, keys):
+                    if isinstance(fact, Compared) or fact.location not in said:
+                        yield fact
+                    if isinstance(fact, Mismatch):
+                        said.add(fact.location)
+
+
+def _other_namespace(
+    workspace: Workspace, tree: YamlNode, node: StartedNode, keys: Mapping[str, tuple[str, ...]]
+) -> Iterator[Compared | Mismatch]:
+    name = workspace.code.name_of(node)
+    if not name or node.namespace is None or package_row(node.package).holds_nodes:
+        return
+    full = node.full_name(name)
+    same = [key for key in keys if key.rpartition("/")[2] == full.rpartition("/")[2]]
+    if not same:
+        return
+    yield Compared("parameters")
+    if any(is_key_of(key, full) for key in keys):
+        return
+    written = same[0].strip("/")
+    message = (
+        f"the node {full} gets nothing of {quoted(written)}, which is the key of the node "
+        f"{same[0]}: write {quoted('/**/' + full.rpartition('/')[2])}, which matches any namespace"
+    )
+    at = tree.key_location(*keys[same[0]])
+    yield Mismatch(PARAMETER_NAMESPACE, message, at, node.location, is_certain=node.when is True)

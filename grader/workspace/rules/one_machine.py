@@ -1,0 +1,244 @@
+"""What only one machine has: paths in a home folder, and environment variables without default."""
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+from grader.base.source import Location, Source
+from grader.base.text import counted, cut, enumerated, quoted
+from grader.ros.known.releases import RELEASES, Release
+from grader.ros.known.ros_machine import ros_machine
+from grader.ros.launch.launch_model import Launch
+from grader.ros.python.parse import Code, lines_of_docstrings, parse
+from grader.workspace.model.stated_releases import releases_in_path
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.rule_table import (
+    ENVIRONMENT_VARIABLE,
+    HOME_PATH,
+    RELEASE_PATH,
+)
+
+# A folder of a user, or a workspace of root.
+_HOME = re.compile(
+    r"(?<![\w$}/.:])(?:file://)?"
+    r"(/(?:(?:home|Users)/[\w.-]+|root(?=/[\w./-]*/(?:src|install)/))/[^\s\"'<>,;:)}\]]*)"
+)
+# A folder of a workspace: /ros2_ws/src/rover/map.yaml.
+_WORKSPACE = re.compile(r"ws/(?:src|install)/[^\s\"'<>,;:)}\]]*+")
+_BEFORE = re.compile(r"(?<![\w~$}.:/-])((?:/[\w.-]*+)+)\Z")
+_PLACEHOLDERS = re.compile(r"^/(?:home|Users)/(?:user|username|you|your[\w-]*|<.*)/")
+# A file in the folder of a release: /opt/ros/humble/share/nav2_bt_navigator/tree.xml.
+_OF_RELEASE = re.compile(
+    rf"(?<![\w/.-])/opt/ros/(?P<release>{'|'.join(RELEASES)})/share/[^\s\"'<>,;:)}}\]]*+"
+)
+_TEXTS = (
+    *(".yaml", ".yml", ".urdf", ".xacro", ".sdf", ".world", ".json", ".lua"),
+    *(".py", ".cpp", ".hpp", ".cc", ".h"),
+)
+_ENVIRONMENT = re.compile(
+    r"\bos\.environ\[\s*[\"'](?P<python>\w+)[\"']\s*\](?!\s*=[^=])"
+    r"|\bEnvironmentVariable\(\s*(?:name\s*=\s*)?[\"'](?P<launch>\w+)[\"']\s*,?\s*\)"
+    r"|\$\(env (?P<xml>\w+)\s*\)"
+)
+_MAX_SHOWN = 60  # characters of a path
+
+
+class _TopicNames:
+    """The names of topics and services in a workspace, which may be like paths: /home/arm/done."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
+
+    def __contains__(self, path: str) -> bool:
+        """Return whether a text is one of the names, or the namespace of one."""
+        name = path.rstrip("/")
+        return any(f"{other}/".startswith(f"{name}/") for other in self._names)
+
+    @cached_property
+    def _names(self) -> set[str]:
+        names: set[str | None] = set()
+        for code in self._workspace.code.by_package.values():
+            for facts in code.nodes:
+                names.update(endpoint.name for endpoint in facts.endpoints)
+        for _, node in self._workspace.launches.nodes:
+            names.add(node.namespace)
+            for rule in node.remaps or ():
+                names.update(rule)
+        return {name for name in names if name is not None}
+
+
+def machine_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield paths in home folders and environment variables that a launch file needs.
+
+    A path in somebody's home folder is yielded once a file. Names of topics and services are no
+    paths, nor is what comments and docstrings say.
+
+    So is one in the folder of another release of ROS 2 than the workspace is for.
+
+    Those of a launch file at which it reads files are problems of this file, and not yielded.
+    """
+    topics = _TopicNames(workspace)
+    launches: dict[str, Launch] = {}
+    for package, path, launch in workspace.launches.files:
+        launches[package.path(path)] = launch
+        yield from _home_values(launch, topics)
+    for package in workspace.packages:
+        for source in workspace.texts.sources_of(package, _TEXTS):
+            if source.path not in launches:
+                yield Compared("machine")
+                yield from _home_paths(source, (), topics)
+                yield from _release_paths(source, workspace.releases)
+        for source in workspace.texts.launch_sources(package):
+            if source.path in launches:
+                yield from _home_paths(source, _said_paths(launches[source.path]), topics)
+                yield from _release_paths(source, workspace.releases)
+    yield from _variables(workspace)
+
+
+class _MachinePath(NamedTuple):
+    """A path of one machine in a text, and where it is."""
+
+    text: str
+    offset: int
+
+
+def _machine_paths(text: str) -> Iterator[_MachinePath]:
+    """Yield the paths in home folders, and those in workspaces at the root of a machine."""
+    ends = set[int]()
+    for path in _HOME.finditer(text):
+        ends.add(path.end())
+        yield _MachinePath(path[1], path.start(1))
+    for path in _WORKSPACE.finditer(text):
+        start = max(0, path.start() - _MAX_SHOWN)
+        before = _BEFORE.search(text[start : path.start()])
+        if before is not None and path.end() not in ends:
+            yield _MachinePath(f"{before[1]}{path[0]}", start + before.start(1))
+
+
+def _home_values(launch: Launch, topics: _TopicNames) -> Iterator[Mismatch]:
+    """Yield the first value of a parameter in a launch file that is a path in a home folder."""
+    said = {reference.location for reference in launch.references}
+    for node in launch.nodes:
+        for given in node.parameters or ():
+            for value in given.values.values():
+                text = value.value if isinstance(value.value, str) else ""
+                paths = [path for path in _machine_paths(text) if path.offset == 0]
+                is_home = bool(paths) and not _PLACEHOLDERS.match(text) and text not in topics
+                if is_home and value.location.path == launch.source.path:
+                    if value.location not in said:
+                        shown = quoted(cut(text, _MAX_SHOWN))
+                        message = f"the path {shown} is of one machine"
+                        yield warning(HOME_PATH, message, value.location)
+                    return
+
+
+def _said_paths(launch: Launch) -> list[str]:
+    """Return what is said already of the paths in a launch file."""
+    said = [reference.reason or reference.path or "" for reference in launch.references]
+    for node in launch.nodes:
+        for given in node.parameters or ():
+            said += [given.path, *(str(value.value) for value in given.values.values())]
+    return said
+
+
+def _release_paths(source: Source, releases: Sequence[Release]) -> Iterator[Mismatch]:
+    """Yield the first path of a file in the folder of another release than the workspace is for.
+
+    Code that names the right release, or asks for it, may choose between paths.
+    """
+    allowed = {*releases, *releases_in_path(source.path)}
+    lowered = source.text.lower()
+    if any(word in lowered for word in ("ros_distro", *releases)):
+        return
+    for path in _OF_RELEASE.finditer(source.text) if releases else ():
+        if path["release"] not in allowed and _is_code(source, path.start()):
+            stated = enumerated([*releases], word="or")
+            message = (
+                f"the path {quoted(cut(path[0], _MAX_SHOWN))} is of {path['release']}, the "
+                f"workspace is for {stated}: find the package in place of it"
+            )
+            yield warning(RELEASE_PATH, message, source.at(path.start()))
+            return
+
+
+def _is_code(source: Source, offset: int) -> bool:
+    """Return whether a place is in no comment and no docstring."""
+    if _is_in_comment(source.text, offset):
+        return False
+    if not source.path.endswith(".py"):
+        return True
+    code = parse(source.text.encode("utf-8", "replace"), source.path)
+    return not isinstance(code, Code) or source.at(offset).line not in lines_of_docstrings(code)
+
+
+def _home_paths(source: Source, said: Collection[str], topics: _TopicNames) -> Iterator[Mismatch]:
+    """Yield that a file names paths in somebody's home folder, at the first of them.
+
+    Those that are part of what is said otherwise do not count.
+    """
+    paths = []
+    for path in _machine_paths(source.text):
+        is_said = _PLACEHOLDERS.match(path.text) or any(path.text in text for text in said)
+        is_comment = _is_in_comment(source.text, path.offset)
+        if not is_said and not is_comment and path.text not in topics:
+            paths.append(path)
+    if paths and source.path.endswith(".py"):
+        code = parse(source.text.encode("utf-8", "replace"), source.path)
+        lines = lines_of_docstrings(code) if isinstance(code, Code) else ()
+        paths = [path for path in paths if source.at(path.offset).line not in lines]
+    if paths:
+        first = min(paths, key=lambda path: path.offset)
+        message = f"the path {quoted(cut(first.text, _MAX_SHOWN))} is of one machine"
+        if len(paths) > 1:
+            message += f"; the file has {len(paths)} such paths"
+        yield warning(HOME_PATH, message, source.at(first.offset))
+
+
+def _is_in_comment(text: str, offset: int) -> bool:
+    """Return whether a line is a comment up to a place."""
+    start = text.rfind("\n", 0, offset) + 1
+    return text[start:offset].lstrip().startswith(("#", "//", "*", "<!--", "--"))
+
+
+def _variables(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the environment variables that launch files need, and do not set or look for.
+
+    Each is yielded once, with the first file that needs it.
+    """
+    places: dict[str, list[Location]] = {}
+    for package in workspace.packages:
+        for source in workspace.texts.launch_sources(package):
+            for name, at in _needed_variables(source):
+                places.setdefault(name, []).append(at)
+    for name, needed_at in places.items():
+        others = len(needed_at) - 1
+        too = f"; {counted(others, 'other launch file needs', 'other launch files need')} it too"
+        message = (
+            f"the launch file ends with an error where the environment variable {name} is not set: "
+            f"give it a default{too if others else ''}"
+        )
+        yield warning(ENVIRONMENT_VARIABLE, message, needed_at[0])
+
+
+def _needed_variables(source: Source) -> Iterator[tuple[str, Location]]:
+    """Yield the environment variables without which a launch file ends, each once."""
+    seen: set[str] = set()
+    for match in _ENVIRONMENT.finditer(source.text):
+        name = match["python"] or match["launch"] or match["xml"]
+        is_known = name in ros_machine().environment or name in seen
+        seen.add(name)
+        if not is_known and not _is_handled(source.text, name):
+            yield name, source.at(match.start())
+
+
+def _is_handled(text: str, name: str) -> bool:
+    """Return whether a text sets a variable, or asks whether it is set."""
+    word = rf"[\"']{name}[\"']"
+    handled = (
+        rf"{word}\s+(?:not\s+)?in\s+os\.environ|os\.environ\[{word}\]\s*=[^=]"
+        rf"|SetEnvironmentVariable\(\s*(?:name\s*=\s*)?{word}|<set_env\s+name={word}"
+        rf"|environ\.(?:get|setdefault)\(\s*{word}|except\s+\(?KeyError"
+    )
+    return re.search(handled, text) is not None

@@ -1,0 +1,102 @@
+"""The form of package.xml, setup.py and setup.cfg: what the tools accept and warn of, or ignore."""
+
+import re
+from collections.abc import Iterator
+
+from grader.base.source import Source
+from grader.base.text import cut, enumerated, quoted
+from grader.ros.installation.manifest import DeclaredDependency, Manifest
+from grader.ros.package.setup_version import versions_in
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.rule_table import (
+    DEPENDENCY_ONCE,
+    MANIFEST_TEXT,
+    PACKAGE_NAME,
+    PACKAGE_VERSION,
+    PYTHON_BUILD_TYPE,
+    SETUP_KEY,
+)
+
+# By Package.validate() of catkin_pkg, which warns of others.
+_NAME = re.compile(r"[a-z][a-z0-9_-]*")
+_DASHED = re.compile(r"^(script-dir|install-scripts)[ \t]*+[=:]", re.MULTILINE)
+_MAX_SHOWN = 40  # characters of a text
+
+
+def package_form_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what is of no use or deprecated in the files of packages of ROS 2.
+
+    These are dependencies that are declared twice, texts between elements, names with capitals,
+    another version in setup.py, keys with dashes in setup.cfg, and a setup.py that colcon does not
+    read because package.xml has no build type.
+    """
+    for package in workspace.packages:
+        manifest = package.manifest
+        if manifest is None or manifest.refusals or package.is_of_ros1:
+            continue
+        yield Compared("builds")
+        yield from _repeated_dependencies(manifest)
+        yield from _loose_texts(manifest)
+        yield from _capital_names(manifest)
+        setup = package.installation
+        if setup is not None and not setup.is_cmake:
+            yield from _other_versions(manifest, setup.source)
+            if not manifest.has_build_type:
+                message = (
+                    "package.xml has no build type, so colcon does not build the package with "
+                    "setup.py: write <export><build_type>ament_python</build_type></export>"
+                )
+                yield warning(PYTHON_BUILD_TYPE, message, manifest.name_location)
+            for source in workspace.texts.sources_of(package, ("setup.cfg",)):
+                yield from _dashed_keys(source)
+
+
+def _repeated_dependencies(manifest: Manifest) -> Iterator[Mismatch]:
+    """Yield the dependencies that a package.xml declares again, under no condition."""
+    repeated: list[DeclaredDependency] = []
+    first: dict[tuple[str, str], DeclaredDependency] = {}
+    for declared in manifest.declared:
+        key = (declared.name, declared.tag)
+        if key in first and not (declared.is_conditional or first[key].is_conditional):
+            repeated.append(declared)
+        first.setdefault(key, declared)
+    if repeated:
+        names = enumerated([*dict.fromkeys(quoted(declared.name) for declared in repeated)])
+        message = f"package.xml declares {names} twice"
+        yield warning(DEPENDENCY_ONCE, message, repeated[0].location)
+
+
+def _loose_texts(manifest: Manifest) -> Iterator[Mismatch]:
+    """Yield the first text between elements of a package.xml."""
+    for text, at in manifest.loose_texts[:1]:
+        shown = quoted(cut(text, _MAX_SHOWN))
+        message = f"package.xml has the text {shown} after this element, which nothing reads"
+        yield warning(MANIFEST_TEXT, message, at)
+
+
+def _capital_names(manifest: Manifest) -> Iterator[Mismatch]:
+    """Yield a name of which catkin_pkg warns."""
+    if manifest.name is not None and _NAME.fullmatch(manifest.name) is None:
+        message = (
+            f"the name of the package {manifest.name!r} should begin with a small letter, and have "
+            "small letters, digits and underscores only"
+        )
+        yield warning(PACKAGE_NAME, message, manifest.name_location)
+
+
+def _other_versions(manifest: Manifest, setup: Source) -> Iterator[Mismatch]:
+    """Yield that setup() in setup.py is given another version than package.xml has."""
+    for version in versions_in(setup) if manifest.version else ():
+        if version.text != manifest.version:
+            message = f"setup.py has the version {version.text}, package.xml {manifest.version}"
+            yield warning(PACKAGE_VERSION, message, version.location, manifest.name_location)
+
+
+def _dashed_keys(source: Source) -> Iterator[Mismatch]:
+    """Yield the first key with a dash."""
+    dashed = _DASHED.search(source.text)
+    if dashed is not None:
+        meant = dashed[1].replace("-", "_")
+        message = f"setuptools deprecates the key {dashed[1]}: write {meant}"
+        yield warning(SETUP_KEY, message, source.at(dashed.start(1)))

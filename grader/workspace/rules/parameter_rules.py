@@ -1,0 +1,684 @@
+"""What is wrong with the values of a well-known node, by the rows of its parameters.
+
+A value may have no effect, be of another type or release, be missing, or not be accepted.
+"""
+
+import operator
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import cache, lru_cache
+from typing import Any, NamedTuple
+
+from grader.base.names import MAX_GUESSES, are_of_one_side, closest, is_misspelling, near
+from grader.base.source import Location
+from grader.base.text import enumerated, quoted
+from grader.ros.known.parameter_rows import (
+    COVERED,
+    ParameterRow,
+    node_rows,
+    rows_of,
+)
+from grader.ros.known.releases import RELEASES, Release, other_name
+from grader.ros.launch.launch_model import ParameterValue
+from grader.ros.python.parse import START
+from grader.ros.python.values import Unknown
+from grader.workspace.rules.names import (
+    Mismatch,
+    corrections,
+    warning,
+)
+from grader.workspace.rules.rule_table import (
+    PARAMETER_EFFECT,
+    PARAMETER_NAME,
+    PARAMETER_RELEASE,
+    PARAMETER_REQUIRED,
+    PARAMETER_TYPE,
+    PARAMETER_VALUE,
+    Rule,
+)
+
+_MAX_TABLES = 100  # of plugins in a node
+_PLAIN = re.compile(r"[\w ./:+,-]*")
+_CLASS_KEYS = ("plugin", "type")  # of a section of parameters of a plugin
+_MANY_UNKNOWN = 5  # parameters, from which on they may be those of another program
+_MAX_LIBRARIES = 3  # that a message names
+_MAX_NAMED = 300  # parameters of which a misspelt one may be one
+_WORDS = {
+    bool: "a boolean",
+    int: "an integer",
+    float: "a double",
+    str: "a string",
+}  # as ROS 2 calls them
+# The same, as generate_parameter_library calls them.
+_DECLARED = {
+    "bool": "a boolean",
+    "int": "an integer",
+    "double": "a double",
+    "string": "a string",
+    "bool_array": "a list of booleans",
+    "int_array": "a list of integers",
+    "double_array": "a list of doubles",
+    "string_array": "a list of strings",
+}
+_NOT_KNOWN = Unknown("its default is not known", START)
+
+
+class GivenNode(NamedTuple):
+    """The parameters that a node, a controller or a plugin gets."""
+
+    node: str  # whose rows count
+    said: str  # what messages call it
+    values: Mapping[str, ParameterValue]
+    # Where a missing parameter is said; None where other files may give the node more.
+    at: Location | None
+    # The places of values that other nodes get too: they need not be parameters of this one.
+    shared: frozenset[Location] = frozenset()
+    prefix: str = ""  # of names, which the file does not have
+
+    def shown(self, name: str) -> str:
+        """Return the name of a parameter as the file has it."""
+        return name.removeprefix(self.prefix)
+
+
+class _RowFinding(NamedTuple):
+    name: str  # of the parameter
+    mismatch: Mismatch
+
+
+class _RowTable(NamedTuple):
+    """The rows of a node or of one of its plugins, whose parameters begin with a prefix."""
+
+    prefix: str
+    rows: "_RowIndex"
+    is_open: bool
+    takes_any_type: bool
+
+
+class _RowIndex(NamedTuple):
+    """The rows of a release: all by their names, those of one name each, and those of many."""
+
+    all_rows: Mapping[str, ParameterRow]
+    by_name: Mapping[str, ParameterRow]
+    patterns: Sequence[ParameterRow]
+
+
+class _ParameterMatch(NamedTuple):
+    """A row that has a name, in its table, with what stands in place of the angle brackets."""
+
+    table: _RowTable
+    row: ParameterRow
+    parts: Sequence[str]
+
+    def full_name(self, name: str) -> str:
+        """Return the full name of another parameter of the same table and the same parts."""
+        for place, part in zip(self.row.places, self.parts, strict=True):
+            name = name.replace(f"<{place}>", part)
+        return f"{self.table.prefix}{name}"
+
+
+def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismatch]:
+    """Yield what is wrong with the parameters of a node in each of the stated releases.
+
+    Without a stated release, it is all that the rows are of. A value that is right in one of them
+    is right.
+    """
+    known = node_rows(given.node)
+    if known is None or not all(map(known.is_known_in, stated)):
+        return
+    read = [release for release in COVERED if known.is_known_in(release)]
+    readers = {release: _NodeReader(given, release) for release in read}
+    releases = [release for release in stated or read if known.is_in(release)]
+    for finding in _findings_in_all([readers[release] for release in releases]):
+        if finding.mismatch.rule is PARAMETER_NAME:
+            yield _unknown_name(given, finding, readers, stated)
+        else:
+            yield finding.mismatch
+
+
+def _unknown_name(
+    given: GivenNode,
+    finding: _RowFinding,
+    readers: Mapping[Release, "_NodeReader"],
+    stated: Sequence[Release],
+) -> Mismatch:
+    """Return that a node has no parameter of a name, with the releases in which it has one."""
+    having = [release for release, reader in readers.items() if reader.has(finding.name)]
+    return _of_other_release(given, finding.name, finding.mismatch, having, stated)
+
+
+def _findings_in_all(readers: "Sequence[_NodeReader]") -> Iterator[_RowFinding]:
+    """Yield what is wrong as each of some releases reads the parameters, as the first says it."""
+    by_release: list[dict[tuple[Rule, str], _RowFinding]] = []
+    for reader in readers:
+        by_release.append({(each.mismatch.rule, each.name): each for each in reader.findings()})
+    for key, finding in by_release[0].items() if by_release else ():
+        if all(key in findings for findings in by_release):
+            yield finding
+
+
+def default_in(given: GivenNode, name: str, release: Release) -> Any:
+    """Return the value that a node has in a release for a parameter that it does not get.
+
+    The result is Unknown where that is not known, None where it has none.
+    """
+    return _NodeReader(given, release).default(name)
+
+
+def _of_other_release(
+    given: GivenNode,
+    name: str,
+    mismatch: Mismatch,
+    releases: Sequence[Release],
+    stated: Sequence[Release],
+) -> Mismatch:
+    """Return that a name is one of other releases, if it is; else that it is not known."""
+    if not releases or not stated:
+        return mismatch
+    at = given.values[name].location if name in given.values else mismatch.location
+    for owner in (f"{given.node}/", f"{given.node.rpartition('/')[2]}/"):
+        other = other_name("parameter", owner + name, stated, shown=owner)
+        if other is not None:
+            return warning(PARAMETER_RELEASE, other.message, at)
+    if RELEASES.index(releases[-1]) < RELEASES.index(stated[0]):
+        gone = RELEASES[RELEASES.index(releases[-1]) + 1]
+        text = f"there is no parameter {name!r} from {gone.title()} on"
+    else:
+        text = f"there is no parameter {name!r} before {releases[0].title()}"
+    return warning(PARAMETER_RELEASE, text, at)
+
+
+class _NodeReader:
+    """The parameters of a node, as one release reads them."""
+
+    def __init__(self, given: GivenNode, release: Release) -> None:
+        self._given, self._release = given, release
+        self._values = given.values
+        self._tables: list[_RowTable] = []
+        self._unread: list[str] = []  # prefixes of plugins that are not known
+        self._is_complete = True  # whether the rows of all plugins are read
+        self._lists: dict[str, Collection[str] | None] = {}  # by their names
+        self._add_tables()
+
+    def has(self, name: str) -> bool:
+        """Return whether there is a parameter of a name."""
+        return self._match(name) is not None
+
+    def default(self, name: str) -> Any:
+        """Return the default of a parameter; Unknown where it is not known, None without one."""
+        match = self._match(name)
+        if match is None:
+            return _NOT_KNOWN if self._may_have_more() else None
+        row = match.row
+        if row.is_required:
+            return None
+        if row.only_with and match.full_name(row.only_with) not in self._values:
+            return None
+        is_read = bool(row.only_with) or all(
+            self._items(match.table, place) for place in row.places
+        )
+        return row.default if is_read and row.default is not None else _NOT_KNOWN
+
+    def _may_have_more(self) -> bool:
+        """Return whether the node may have parameters that no row is of."""
+        if self._unread or not self._is_complete:
+            return True
+        return any(table.is_open for table in self._tables)
+
+    def findings(self) -> Iterator[_RowFinding]:
+        """Yield what is wrong."""
+        unmatched: dict[str, ParameterValue] = {}
+        said: set[str] = set()  # the switches without which values have no effect
+        for name, value in self._values.items():
+            match = self._match(name)
+            if match is None:
+                unmatched[name] = value
+                continue
+            switch = self._switch_off(match)
+            # The default says nothing, whether it is read or not; nor does zero, which generators
+            # write for a limit that is off.
+            is_number = not isinstance(value.value, bool)
+            is_default = is_number and value.value in (match.row.default, 0)
+            if switch is None:
+                yield from self._value_findings(name, value, match)
+            elif switch.name not in said and not is_default:
+                said.add(switch.name)
+                yield switch.finding(self._given, name, value)
+        # So many may be those of another program of this name, built from its own source.
+        is_another = len(unmatched) >= _MANY_UNKNOWN and 2 * len(unmatched) > len(self._values)
+        if not is_another and self._is_complete:
+            yield from self._name_findings(unmatched)
+
+    def _name_findings(self, unmatched: Mapping[str, ParameterValue]) -> Iterator[_RowFinding]:
+        """Yield the parameters that there are not, and those without which the node stops."""
+        meant: dict[str, str] = {}  # the parameters that misspelt ones stand for
+        unread: dict[str, _RowFinding] = {}
+        for name, value in unmatched.items():
+            if self._is_under_unread(name):
+                continue
+            near_name = self._near(name) if len(unread) < MAX_GUESSES else None
+            if near_name is not None:
+                meant.setdefault(near_name, name)
+            finding = self._unknown(name, value, near_name)
+            if finding is not None:
+                unread.setdefault(finding.name, finding)
+        if self._given.at is not None:
+            yield from self._missing(meant, unread)
+        yield from unread.values()
+
+    def _add_tables(self) -> None:
+        waiting = [("", self._given.node)]
+        while waiting and len(self._tables) < _MAX_TABLES:
+            prefix, node = waiting.pop(0)
+            known = node_rows(node)
+            is_known = known is not None and known.is_known_in(self._release)
+            if known is None or not is_known or not known.is_in(self._release):
+                self._unread.append(prefix)
+                continue
+            index = _index(node, self._release)
+            is_open = self._release in known.open_in
+            self._tables.append(_RowTable(prefix, index, is_open, known.takes_any_type))
+            for row in index.all_rows.values():
+                if row.is_class:
+                    waiting += self._plugins(prefix, row)
+        self._is_complete = not waiting
+
+    def _plugins(self, prefix: str, row: ParameterRow) -> Iterator[tuple[str, str]]:
+        """Yield the classes that a parameter names, with the prefix of their parameters."""
+        for name, given in self._values.items():
+            if not name.startswith(prefix) or not row.pattern.fullmatch(name[len(prefix) :]):
+                continue
+            above, dot, _ = name.rpartition(".")
+            if isinstance(given.value, str):
+                yield above + dot, given.value.replace("/", "::")
+
+    def _match(self, name: str) -> _ParameterMatch | None:
+        """Return the row of a parameter."""
+        for table in self._tables:
+            if not name.startswith(table.prefix):
+                continue
+            own_name = name[len(table.prefix) :]
+            row = table.rows.by_name.get(own_name)
+            if row is not None:
+                return _ParameterMatch(table, row, ())
+            for row in table.rows.patterns:
+                match = row.pattern.fullmatch(own_name)
+                if match is not None and self._are_listed(table, row, match.groups()):
+                    return _ParameterMatch(table, row, match.groups())
+        return None
+
+    def _are_listed(self, table: _RowTable, row: ParameterRow, parts: Sequence[str]) -> bool:
+        """Return whether the lists that a name of a row takes its parts from have them."""
+        for place, part in zip(row.places, parts, strict=True):
+            items = self._items(table, place)
+            if items is not None and part not in items:
+                return False
+        return True
+
+    def _items(self, table: _RowTable, place: str) -> Collection[str] | None:
+        """Return the entries of the list that a part of a name is one of; None for any."""
+        name = f"{table.prefix}{place}"
+        if name not in self._lists:
+            row = table.rows.by_name.get(place)
+            given = self._values.get(name)
+            if given is not None:
+                self._lists[name] = _entries(given.value)
+            else:
+                self._lists[name] = _entries(row.default) or None if row is not None else None
+        return self._lists[name]
+
+    def _is_under_unread(self, name: str) -> bool:
+        """Return whether a parameter may be one of a plugin that is not known."""
+        if any(prefix and name.startswith(prefix) for prefix in self._unread):
+            return True
+        parts = name.split(".")
+        for count in range(1, len(parts)):
+            for key in _CLASS_KEYS:
+                kind = ".".join((*parts[:count], key))
+                if kind in self._values and self._match(kind) is None:
+                    return True
+        return False
+
+    def _switch_off(self, match: _ParameterMatch) -> "_OffSwitch | None":
+        """Return the parameter by whose value another one has no effect; None if it has one."""
+        row = match.row
+        is_whole = self._given.at is not None
+        needed = match.full_name(row.only_with)
+        if row.only_with and is_whole and needed not in self._values:
+            return _OffSwitch(needed, f" without {needed}")
+        for switch, wanted in row.unless.items():
+            own_row = match.table.rows.all_rows.get(switch)
+            switch_name = match.full_name(switch)
+            if own_row is None:
+                continue
+            if switch_name in self._values:
+                value = self._values[switch_name].value
+                place = f" ({self._values[switch_name].location.file_and_line})"
+            elif is_whole:
+                value, place = own_row.default, ", by default"
+            else:
+                continue
+            if type(value) is type(wanted) and value != wanted:
+                shown = self._given.shown(switch_name)
+                return _OffSwitch(switch_name, f": {shown} is {_shown(value)}{place}")
+        return None
+
+    def _other_type(
+        self, name: str, given: ParameterValue, match: _ParameterMatch
+    ) -> _RowFinding | None:
+        """Return that a value has another type than its node declares.
+
+        A text that a launch file replaces may stand for the value.
+        """
+        actual, declared = type_in_words(given.value), _DECLARED.get(match.row.type, "")
+        if not declared or not actual or actual == declared:
+            return None
+        message = (
+            f"the parameter {self._given.shown(name)!r} is given {actual}{given.remark}; "
+            f"{self._given.said} declares {declared}, and stops"
+        )
+        return self._certain(PARAMETER_TYPE, name, message, given.location)
+
+    def _value_findings(
+        self, name: str, given: ParameterValue, match: _ParameterMatch
+    ) -> Iterator[_RowFinding]:
+        """Yield that a value has another type, or that its node does not accept it."""
+        other_type = self._other_type(name, given, match)
+        if other_type is None:
+            yield from self._not_accepted(name, given, match)
+        elif not match.table.takes_any_type and not _is_placeholder(given.value):
+            yield other_type
+
+    def _not_accepted(
+        self, name: str, given: ParameterValue, match: _ParameterMatch
+    ) -> Iterator[_RowFinding]:
+        """Yield the values that a node does not accept, and stops at."""
+        wrong = _beyond(match.row, given.value)
+        if wrong:
+            message = (
+                f"the parameter {self._given.shown(name)!r} is {_shown(given.value)}; "
+                f"{self._given.said} {wrong}"
+            )
+            yield self._certain(PARAMETER_VALUE, name, message, given.location)
+        wrong = self._wrong_library(name, match.row, given.value)
+        if wrong:
+            message = f"{self._given.said} {wrong}"
+            yield self._certain(PARAMETER_VALUE, name, message, given.location)
+
+    def _wrong_library(self, name: str, row: ParameterRow, value: Any) -> str:
+        """Return, in words, that a node stops at a library of plugins; empty if it does not."""
+        if not row.libraries or not isinstance(value, list):
+            return ""
+        listed = [str(item) for item in value]
+        twice = [item for item in listed if item in row.libraries]
+        if twice and row.loads_libraries:
+            return (
+                f"loads {enumerated(twice, _MAX_LIBRARIES)} itself, and stops where {name} has "
+                "the same: list only other libraries"
+            )
+        return self._missing_library(row, [item for item in listed if item not in row.libraries])
+
+    def _missing_library(self, row: ParameterRow, unknown: Sequence[str]) -> str:
+        """Return that a library is misspelt or of another release; empty if none surely is."""
+        others = self._libraries_of_releases(row)
+        for name in unknown:
+            meant = near(name, row.libraries)
+            if name in others or meant is not None:
+                guess = f"; did you mean {quoted(meant)}?" if meant is not None else ""
+                return f"stops: {self._release.title()} has no library {quoted(name)}{guess}"
+        return ""
+
+    def _libraries_of_releases(self, row: ParameterRow) -> set[str]:
+        """Return the libraries that a parameter may list in any release."""
+        libraries: set[str] = set()
+        for other in rows_of(self._given.node):
+            if other.name == row.name:
+                libraries.update(other.libraries)
+        return libraries
+
+    def _certain(self, rule: Rule, name: str, message: str, at: Location) -> _RowFinding:
+        return _RowFinding(name, Mismatch(rule, message, at))
+
+    def _near(self, name: str) -> str | None:
+        """Return the parameter that another name surely stands for: one part of it is misspelt."""
+        candidates: dict[str, str] = {}  # the parts that are misspelt, by what they stand for
+        corrected_names: dict[str, str] = {}  # the names, by the same
+        for table in self._tables:
+            if not name.startswith(table.prefix):
+                continue
+            own_parts = name[len(table.prefix) :].split(".")
+            for row in table.rows.all_rows.values():
+                corrected = _corrected(own_parts, row.name.split("."))
+                if corrected is None:
+                    continue
+                full = table.prefix + ".".join(corrected.parts)
+                if full not in self._values and self.has(full):
+                    candidates[corrected.meant] = corrected.part
+                    corrected_names[corrected.meant] = full
+        parts = set(candidates.values())
+        meant = near(parts.pop(), candidates) if len(parts) == 1 else None
+        return corrected_names[meant] if meant is not None else None
+
+    def _unknown(
+        self, name: str, value: ParameterValue, near_name: str | None
+    ) -> _RowFinding | None:
+        """Return that there is no parameter of a name, or of the table that it is in."""
+        if value.location in self._given.shared:
+            return None
+        at = value.name_location
+        if near_name is not None:
+            return self._misspelt(name, at, near_name)
+        table = next(
+            candidate for candidate in reversed(self._tables) if name.startswith(candidate.prefix)
+        )
+        if table.is_open or "" in self._unread:
+            return None
+        section = self._first_unknown(name, table)
+        similar = closest(section, self._names(table), is_clear=True)
+        guess = ""
+        if similar and is_misspelling(section, similar) and are_of_one_side(section, similar):
+            guess = f"; did you mean {quoted(similar)}?"
+        message = f"{self._given.said} has no parameter {quoted(section)}{guess}"
+        mismatch = warning(PARAMETER_NAME, message, at)
+        return _RowFinding(section, mismatch)
+
+    def _misspelt(self, name: str, at: Location, near_name: str) -> _RowFinding:
+        """Return that a name surely stands for another parameter."""
+        old, new = name.rpartition(".")[2], near_name.rpartition(".")[2]
+        message = (
+            f"{self._given.said} has no parameter {quoted(self._given.shown(name))}; did you "
+            f"mean {quoted(self._given.shown(near_name))}?"
+        )
+        mismatch = Mismatch(
+            PARAMETER_NAME,
+            message,
+            at,
+            is_certain=False,
+            corrections=corrections(old, at, new),
+        )
+        return _RowFinding(name, mismatch)
+
+    def _first_unknown(self, name: str, table: _RowTable) -> str:
+        """Return a name up to the first part with which no parameter begins."""
+        parts = name[len(table.prefix) :].split(".")
+        for count in range(1, len(parts)):
+            start = parts[:count]
+            if not any(self._begins(table, row, start) for row in table.rows.all_rows.values()):
+                return table.prefix + ".".join(start)
+        return name
+
+    def _begins(self, table: _RowTable, row: ParameterRow, start: Sequence[str]) -> bool:
+        """Return whether the name of a row may begin with some parts."""
+        parts = row.name.split(".")
+        for own_part, part in zip(parts, start, strict=False):
+            place = own_part[1:-1] if own_part.startswith("<") and own_part.endswith(">") else ""
+            items = self._items(table, place) if place else None
+            is_other = own_part != part and "<" not in own_part
+            if is_other or (items is not None and part not in items):
+                return False
+        return len(parts) >= len(start) or parts[-1] == "<**>"
+
+    def _names(self, table: _RowTable) -> list[str]:
+        return [f"{table.prefix}{name}" for name in table.rows.by_name][:_MAX_NAMED]
+
+    def _missing(
+        self, meant: Mapping[str, str], unread: dict[str, _RowFinding]
+    ) -> Iterator[_RowFinding]:
+        """Yield the parameters without which a node stops, and that it does not get."""
+        at = self._given.at
+        assert at is not None
+        for table in self._tables:
+            for row, name in self._required(table):
+                if name in self._values:
+                    continue
+                message = (
+                    f"{self._given.said} stops without the parameter {name}, which it does not get"
+                )
+                wrong = meant.get(name) or closest(name, unread)
+                if wrong is None or wrong not in self._values:
+                    yield self._certain(PARAMETER_REQUIRED, name, message, at)
+                    continue
+                unread.pop(wrong, None)
+                value = self._values[wrong]
+                place = value.name_location
+                text = f"{message}; did you mean it by {wrong!r}?"
+                either = corrections(wrong.rpartition(".")[2], place, row.name.rpartition(".")[2])
+                mismatch = Mismatch(PARAMETER_REQUIRED, text, place, corrections=either)
+                yield _RowFinding(name, mismatch)
+
+    def _required(self, table: _RowTable) -> Iterator[tuple[ParameterRow, str]]:
+        """Yield the rows without which a node stops, with the names that it needs.
+
+        Of a row with a part for the value of another parameter, it is the name with the value
+        that is given.
+        """
+        for row in table.rows.all_rows.values():
+            if not row.is_required:
+                continue
+            if not row.places:
+                yield row, f"{table.prefix}{row.name}"
+                continue
+            (place,) = row.places
+            given = self._values.get(f"{table.prefix}{place}")
+            if given is not None and isinstance(given.value, str):
+                yield row, f"{table.prefix}{row.name.replace(f'<{place}>', given.value)}"
+
+
+class _OffSwitch(NamedTuple):
+    """A parameter by whose value, or absence, others have no effect."""
+
+    name: str
+    words: str
+
+    def finding(self, given: GivenNode, name: str, value: ParameterValue) -> _RowFinding:
+        """Return that a parameter has no effect."""
+        at = value.name_location
+        message = f"{given.said} does not use {given.shown(name)}{self.words}"
+        mismatch = warning(PARAMETER_EFFECT, message, at)
+        return _RowFinding(name, mismatch)
+
+
+@cache
+def _index(node: str, release: Release) -> _RowIndex:
+    rows = {row.name: row for row in rows_of(node, release)}
+    by_name = {name: row for name, row in rows.items() if not row.places}
+    patterns = [row for row in rows.values() if row.places]
+    return _RowIndex(rows, by_name, patterns)
+
+
+def _entries(value: Any) -> Collection[str] | None:
+    """Return the entries of a list, or the words of a text; None for what is not known."""
+    if isinstance(value, str):
+        return frozenset(value.split())
+    return frozenset(map(str, value)) if isinstance(value, list) else None
+
+
+class _Corrected(NamedTuple):
+    """A name with one part corrected."""
+
+    parts: Sequence[str]
+    part: str
+    meant: str
+
+
+@lru_cache(maxsize=4096)
+def _may_mean(part: str, own_part: str) -> bool:
+    """Return whether a part of a name may be a misspelt one; each release asks for the same."""
+    return near(part, [own_part]) is not None
+
+
+def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> _Corrected | None:
+    """Return a name with the one part corrected that differs from a row's.
+
+    The result is None if not one does, or not surely.
+    """
+    if len(parts) != len(wanted):
+        return None
+    corrected: list[str] = []
+    changed: list[tuple[str, str]] = []
+    for part, own_part in zip(parts, wanted, strict=True):
+        meant = own_part
+        if "<#>" in own_part:
+            digits = "".join(character for character in part if character.isdigit())
+            meant = own_part.replace("<#>", digits) if digits else part
+        elif "<" in own_part:
+            meant = part
+        if meant != part:
+            changed.append((part, meant))
+        corrected.append(meant)
+    if len(changed) != 1 or not _may_mean(*changed[0]):
+        return None
+    return _Corrected(corrected, *changed[0])
+
+
+def type_in_words(value: Any) -> str:
+    """Return the type that ROS 2 gives a value, in words; empty where it is not known."""
+    if isinstance(value, list | tuple):
+        kinds = {type_in_words(item) for item in value}
+        if len(kinds) == 1 and kinds != {""}:
+            return f"a list of {kinds.pop().partition(' ')[2]}s"
+        return ""
+    return _WORDS.get(type(value), "")
+
+
+def _is_placeholder(value: Any) -> bool:
+    """Return whether a text may be one that a launch file replaces, such as KEEPOUT_ENABLED."""
+    return isinstance(value, str) and (value.isupper() or not _PLAIN.fullmatch(value))
+
+
+def _beyond(row: ParameterRow, value: Any) -> str:
+    """Return what a node needs in place of a value, in words; empty for one that it accepts."""
+    if isinstance(value, list):
+        return _beyond_list(row, value)
+    if row.one_of and isinstance(value, str) and value not in row.one_of:
+        return f"needs {enumerated([*map(_shown, row.one_of)], word='or')}, and stops"
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return ""
+    bounds = (
+        (row.above, operator.le, "more than"),
+        (row.below, operator.ge, "less than"),
+        (row.lower, operator.lt, "at least"),
+        (row.upper, operator.gt, "at most"),
+    )
+    for bound, is_beyond, words in bounds:
+        if bound is not None and is_beyond(value, bound):
+            return f"needs {words} {bound:g}, and stops"
+    return ""
+
+
+def _beyond_list(row: ParameterRow, value: Sequence[Any]) -> str:
+    if row.size is not None and len(value) != row.size:
+        return f"needs {row.size} values, and stops"
+    others = [item for item in value if row.entries and item not in row.entries]
+    if others:
+        return f"knows no {_shown(others[0])} there, and stops"
+    return ""
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float | int):
+        return f"{value:g}"
+    if isinstance(value, list):
+        return "[" + ", ".join(_shown(item) for item in value) + "]"
+    return quoted(str(value))

@@ -1,0 +1,163 @@
+"""Plugins of own packages: the classes that files name, and what describes and exports these."""
+
+import posixpath
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from grader.base.names import closest, near
+from grader.base.source import Location, Source
+from grader.ros.package.package import MANIFEST, Package
+from grader.workspace.graph.started_controllers import defined_controllers
+from grader.workspace.model.text_files import MAX_YAML
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch, corrections, warning
+from grader.workspace.rules.rule_table import (
+    PLUGIN_CLASS,
+    PLUGIN_EXPORTED,
+    PLUGIN_LIBRARY,
+)
+
+_MADE = (".xml.in", ".xml.em")  # endings of files of which a build makes descriptions
+_DESCRIBES = "base_class_type"
+_LIBRARY = re.compile(r"<library\s++path\s*+=\s*+[\"']([^\"']++)[\"']")
+_CLASS = re.compile(r"<class\s++([^<>]*+)>")
+_ATTRIBUTE = re.compile(r"\b(\w++)\s*+=\s*+[\"']([^\"']*+)[\"']")
+# The packages whose classes are the bases of controllers and of hardware.
+_CONTROLLERS, _HARDWARE = "controller_interface::", "hardware_interface::"
+
+
+class _DescribedClass(NamedTuple):
+    """A class that a file for pluginlib describes, and where its element begins."""
+
+    name: str  # by which pluginlib finds it
+    type: str
+    base: str
+    package: str
+    location: Location
+
+
+class _NamedClass(NamedTuple):
+    """A class that a file names for pluginlib."""
+
+    name: str
+    location: Location
+    base: str
+    user: str
+
+
+def plugin_class_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the classes of own packages that no file describes, and files that nothing exports."""
+    described: list[_DescribedClass] = []
+    for package in workspace.packages:
+        for source in _descriptions(workspace, package):
+            described += _classes_in(source, package.name)
+            yield from _not_exported(package, source)
+            yield from _other_libraries(package, source)
+    yield from _not_described(workspace, described)
+
+
+def _classes_in(source: Source, package: str) -> Iterator[_DescribedClass]:
+    for element in _CLASS.finditer(source.text):
+        attributes: dict[str, str] = {}
+        for name, value in _ATTRIBUTE.findall(element[1]):
+            attributes[name] = value
+        kind, base = attributes.get("type", ""), attributes.get(_DESCRIBES, "")
+        at = source.at(element.start())
+        yield _DescribedClass(attributes.get("name", kind), kind, base, package, at)
+
+
+def described_classes(workspace: Workspace) -> Iterator[_DescribedClass]:
+    """Yield the classes that the packages describe for pluginlib."""
+    for package in workspace.packages:
+        for source in _descriptions(workspace, package):
+            yield from _classes_in(source, package.name)
+
+
+def _descriptions(workspace: Workspace, package: Package) -> Iterator[Source]:
+    """Yield the files of a package that describe classes."""
+    for source in workspace.texts.sources_of(package, (".xml",)):
+        if _DESCRIBES in source.text and source.path != package.path(MANIFEST):
+            yield source
+
+
+def named_classes(workspace: Workspace) -> Iterator[_NamedClass]:
+    """Yield the controllers and hardware whose classes files name."""
+    yield from _controllers(workspace)
+    yield from _hardware(workspace)
+
+
+def _not_described(workspace: Workspace, described: Sequence[_DescribedClass]) -> Iterator[Fact]:
+    """Yield the names of classes that their own package does not describe.
+
+    Only of a package that describes classes of the same kind, and makes no descriptions.
+    """
+    for wanted in named_classes(workspace):
+        prefix = re.split(r"/|::", wanted.name, maxsplit=1)[0]
+        names = [
+            each.name
+            for each in described
+            if each.package == prefix and each.base.startswith(wanted.base)
+        ]
+        owners = [package for package in workspace.packages if package.name == prefix]
+        if not names or len(owners) != 1:
+            continue
+        if any(path.endswith(_MADE) for path in owners[0].tree.files):
+            continue
+        yield Compared("controllers")
+        if any(wanted.name in (each.name, each.type) for each in described):
+            continue
+        workspace.charge(len(names))
+        meant = closest(wanted.name, names)
+        hint = f"did you mean {meant!r}?" if meant is not None else f"it has {', '.join(names)}"
+        message = f"{wanted.user}: the package {prefix!r} describes no {wanted.name!r}; {hint}"
+        either = corrections(wanted.name, wanted.location, meant)
+        yield Mismatch(PLUGIN_CLASS, message, wanted.location, corrections=either)
+
+
+def _controllers(workspace: Workspace) -> Iterator[_NamedClass]:
+    for controller in defined_controllers(workspace):
+        name = controller.type.text or ""
+        user = f"{controller.name}.type"
+        yield _NamedClass(name, controller.type.location, _CONTROLLERS, user)
+
+
+def _hardware(workspace: Workspace) -> Iterator[_NamedClass]:
+    for robot in workspace.robots.known:
+        for system in robot.systems:
+            for plugin in system.iterfind("hardware/plugin"):
+                name = (plugin.text or "").strip()
+                yield _NamedClass(name, robot.place(plugin), _HARDWARE, "<plugin>")
+
+
+def _not_exported(package: Package, source: Source) -> Iterator[Mismatch]:
+    """Yield a file of classes that neither CMakeLists.txt nor package.xml exports."""
+    setup = package.installation
+    if setup is None or not package.is_cmake or setup.fault is not None:
+        return
+    name = posixpath.basename(source.path)
+    manifest = (package.tree.read(MANIFEST, MAX_YAML) or b"").decode("utf-8", "replace")
+    text = setup.source.text
+    is_read = "include(" not in text and "configure_file" not in text and "foreach" not in text
+    if is_read and name not in text and name not in manifest and "pluginlib" in text:
+        message = (
+            f"no pluginlib_export_plugin_description_file() names {name}, so pluginlib finds none "
+            "of its classes"
+        )
+        yield warning(PLUGIN_EXPORTED, message, Location(source.path, 1, 1))
+
+
+def _other_libraries(package: Package, source: Source) -> Iterator[Mismatch]:
+    """Yield the libraries of a file of classes that no target makes, where a similar one is."""
+    setup = package.installation
+    targets = setup.targets if setup is not None and setup.fault is None else ()
+    names = [target.name for target in targets]
+    for match in _LIBRARY.finditer(source.text):
+        path = posixpath.basename(match[1])
+        meant = near(path, names)
+        if meant is None or {path, path.removeprefix("lib")} & {*names} or "$" in path:
+            continue
+        at = source.at(match.start(1))
+        message = f"no target makes the library {path!r}; did you mean {meant!r}?"
+        either = corrections(path, at, meant)
+        yield warning(PLUGIN_LIBRARY, message, at)._replace(corrections=either)

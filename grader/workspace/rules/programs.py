@@ -1,0 +1,280 @@
+"""Programs and nodes: what launch files start, entry points, and nodes under a manager.
+
+The nodes are those that a lifecycle manager looks after.
+"""
+
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import suppress
+from typing import NamedTuple
+
+from grader.base.errors import InputError
+from grader.base.source import Location
+from grader.ros.installation.installation import Installation
+from grader.ros.installation.places import is_launch_file
+from grader.ros.known.package_rows import package_row
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.node_parameters import parameters_of
+from grader.ros.package.entry_points import (
+    entry_fault,
+    entry_points,
+    module_path,
+    modules_beside,
+    modules_not_installed,
+    read_module,
+)
+from grader.ros.package.package import CMAKE, SETUP, Package
+from grader.ros.package.program_names import meant_program, program_names, program_of_module
+from grader.ros.python.parse import bound_in
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import (
+    Compared,
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Undecided,
+    Use,
+    corrections,
+    warning,
+)
+from grader.workspace.rules.rule_table import (
+    ENTRY_MODULE,
+    ENTRY_POINT,
+    MODULE_INSTALLED,
+    PROGRAM_EXISTS,
+    PROGRAM_RUNS,
+)
+
+_MAX_FIRST_LINE = 100  # bytes
+_OF_MISSING = 5_000  # parts: similar names are searched among all programs
+
+
+def program_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the programs that launch files start and no package has, and unstarted nodes."""
+    started = {(node.package, node.executable) for _, node in workspace.launches.nodes}
+    for package in workspace.packages:
+        yield from _entry_points(workspace, package)
+        yield from _unstarted_scripts(package, started)
+    for package, node in workspace.launches.nodes:
+        if not workspace.folder.means_one(package, node.package):
+            yield Undecided("programs", f"several packages are named {node.package!r}")
+            continue
+        owner = package.find(node.package)
+        if owner is not None:
+            yield from _own_program(workspace, owner, node)
+            continue
+        row = package_row(node.package)
+        programs = row.programs if row.is_compared else None
+        if programs is None:
+            continue
+        yield Compared("programs")
+        if node.executable not in programs:
+            workspace.charge(_OF_MISSING)
+            missing = _missing_program(node.package, node.executable, programs)
+            either = corrections(node.executable, node.location, missing.meant)
+            wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+            yield wrong._replace(word=node.executable, names=(node.package,))
+    yield from _lifecycle(workspace)
+
+
+def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Iterator[Fact]:
+    """Yield that a package of the workspace does not have the program of a node.
+
+    Or Linux cannot execute the program.
+    """
+    yield Compared("programs")
+    if owner.installation is not None and owner.installation.unread:
+        yield Undecided("programs", owner.installation.unread)
+    if owner.has_program(node.package, node.executable) is False:
+        workspace.charge(_OF_MISSING + len(owner.tree.files))
+        missing = _why_no_program(owner, node.executable)
+        start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
+        either = corrections(node.executable, node.location, missing.meant, start)
+        wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+        yield wrong._replace(word=node.executable, names=(node.package,))
+    else:
+        yield from _not_executed(owner, node.executable, node.location)
+
+
+def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
+    """Yield the entry points of a package that name no function."""
+    for entry in entry_points(package):
+        yield Compared("programs")
+        path = module_path(package, entry.module)
+        size = package.tree.files[path].size if path is not None else 0
+        workspace.charge(len(package.tree.files) + size)  # the functions of the module
+        fault = entry_fault(package, entry.name)
+        if fault is not None:
+            message = f"the entry point of {entry.name!r} names no function: {fault.message}"
+            either = corrections(fault.written, fault.location, fault.meant)
+            yield Mismatch(ENTRY_POINT, message, fault.location, corrections=either)
+    yield from _other_modules(package)
+    yield from _modules_not_installed(workspace, package)
+
+
+def _modules_not_installed(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
+    """Yield the modules of the package that an entry point imports and no build installs."""
+    for missing in modules_not_installed(package):
+        message = (
+            f"no build installs {missing.package!r}, so that this import fails: add it to packages "
+            "in setup.py"
+        )
+        place = Location(package.path(SETUP), 1, 1)
+        yield Mismatch(MODULE_INSTALLED, message, missing.location, place, word=missing.module)
+    setups = [other.installation for other in workspace.packages]
+    for beside in modules_beside(package):
+        if any(setup is not None and beside.module in setup.packages for setup in setups):
+            continue
+        message = (
+            f"there is no module {beside.module} after a build, but {beside.package}."
+            f"{beside.module}, so that this import fails: import it from {beside.package}"
+        )
+        yield Mismatch(MODULE_INSTALLED, message, beside.location, word=beside.module)
+
+
+def _other_modules(package: Package) -> Iterator[Mismatch]:
+    """Yield the entry points that run another module than the one of their own name.
+
+    The one of their name has the function that they name, and no other entry point runs it.
+    """
+    entries = entry_points(package)
+    modules = {entry.module for entry in entries}
+    for entry in entries:
+        folder, _, last = entry.module.rpartition(".")
+        own_module = f"{folder}.{entry.name}" if folder else entry.name
+        path = module_path(package, own_module)
+        if entry.name == last or own_module in modules or path is None or not entry.function:
+            continue
+        if entry_fault(package, entry.name) is not None:  # which is said
+            continue
+        code = read_module(package, path)
+        if code is not None and entry.function in bound_in(code.tree):
+            message = (
+                f"the entry point {entry.name!r} runs {entry.module}; no entry point runs "
+                f"{own_module}, which has {entry.function}() too"
+            )
+            place = Location(package.path(path), 1, 1)
+            yield warning(ENTRY_MODULE, message, entry.location, place)
+
+
+def _unstarted_scripts(
+    package: Package, started: Collection[tuple[str, str]]
+) -> Iterator[Mismatch]:
+    """Yield the scripts that CMake installs as programs, and that Linux cannot execute.
+
+    A launch file that starts one is said to start it.
+    """
+    setup = package.installation
+    home = f"lib/{package.name}/"
+    for target in setup.scripts if setup is not None else ():
+        name = target.removeprefix(home)
+        source = package.installed.get(target, "")
+        is_other = "/" in name or name == "__init__.py" or is_launch_file(source)
+        if not is_other and (package.name, name) not in started:
+            for wrong in _not_executed(package, name, None):
+                yield wrong._replace(is_certain=False)
+
+
+def _not_executed(package: Package, name: str, at: Location | None) -> Iterator[Mismatch]:
+    """Yield that Linux cannot execute a script, which is started at a place.
+
+    Its first line has to name the interpreter, and end without CR.
+    """
+    source = package.installed.get(f"lib/{package.name}/{name}", "")
+    if source.endswith(".py"):
+        with suppress(InputError):
+            start = package.tree.files[source].read(_MAX_FIRST_LINE, first=True)
+            line = start.partition(b"\n")[0]
+            if not line.startswith(b"#!"):
+                wrong = "is not #!/usr/bin/env python3"
+            elif line.endswith(b"\r"):
+                wrong = "ends as on Windows, with CR LF"
+            else:
+                return
+            message = f"Linux cannot execute {name}: its first line {wrong}"
+            yield Mismatch(PROGRAM_RUNS, message, Location(package.path(source), 1, 1), at)
+
+
+class _MissingProgram(NamedTuple):
+    """Why a package has no program of a name, and the name of the program that may be meant."""
+
+    message: str
+    meant: str | None = None
+
+
+def _why_no_program(package: Package, name: str) -> _MissingProgram:
+    """Return that ros2 run does not find a program, and where it is, or which there are."""
+    setup, home = package.installation, f"lib/{package.name}"
+    entries = [entry.name for entry in entry_points(package)]
+    if name in entries:
+        folder = setup.scripts_folder if setup is not None else ""
+        return _MissingProgram(
+            f"a build installs {name!r} in {folder}, not in {home}: see install_scripts of "
+            "setup.cfg"
+        )
+    if _is_built_only(setup, name):
+        message = f"CMakeLists.txt builds {name!r}, but no install(TARGETS ...) names it"
+        return _MissingProgram(message)
+    installed = []
+    if setup is not None:
+        installed = [*setup.programs, *(copy.target for copy in setup.copies)]
+    paths = {path.rpartition("/")[2]: path for path in reversed(installed)}
+    if name in paths and paths[name] == f"{home}/{name}":
+        return _MissingProgram(
+            f"a build installs {name!r} without the right to execute it: write "
+            "install(PROGRAMS ...)"
+        )
+    if name in paths:
+        where = f"as {paths[name]}, but ros2 run looks in {home}"
+        return _MissingProgram(f"a build installs {name!r} {where}")
+    meant = program_of_module(package, name)
+    return _missing_program(package.name, name, program_names(package), meant)
+
+
+def _is_built_only(setup: Installation | None, name: str) -> bool:
+    """Return whether CMake makes a program that no install() names."""
+    for target in setup.targets if setup is not None else ():
+        is_program = target.kind == "executable" and (target.program or target.name) == name
+        if is_program and not target.is_installed:
+            return True
+    return False
+
+
+def _missing_program(
+    package: str, name: str, programs: Sequence[str], meant: str | None = None
+) -> _MissingProgram:
+    """Return that a package has only programs of other names, and the one that may be meant."""
+    guess = meant or meant_program(name, programs)
+    there = f"did you mean {guess!r}?" if guess else f"it has {', '.join(programs) or 'none'}"
+    return _MissingProgram(f"the package {package!r} has no program {name!r}; {there}", guess)
+
+
+def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the nodes that lifecycle managers are told of, and all that are started."""
+    managers = [
+        pair for pair in workspace.launches.nodes if pair[1].executable == "lifecycle_manager"
+    ]
+    if managers:
+        yield from _started(workspace)
+    for package, manager in managers:
+        given = parameters_of(manager, package.open_installed, "lifecycle_manager")
+        workspace.charge(len(given.values))
+        names = given.values.get("node_names")
+        if given.unknown and names is None:
+            yield Undecided("programs", given.unknown)
+        if names is not None and isinstance(names.value, list):
+            for name in names.value:
+                yield Use("node", str(name).rpartition("/")[2], names.location, "node_names")
+
+
+def _started(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the nodes that launch files start, and that there may be more."""
+    for _, _, launch in workspace.launches.files:
+        if launch.more:
+            yield Open("node", reason=launch.more)
+    for _, node in workspace.launches.nodes:
+        name = workspace.code.name_of(node)
+        if name is not None:
+            yield Definition("node", name, node.location)
+        elif "lifecycle" not in package_row(node.package).without:
+            yield Open("node")

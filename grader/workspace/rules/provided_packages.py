@@ -1,0 +1,256 @@
+"""Packages that are there: in the workspace, in a release of ROS 2, or under a key of rosdep."""
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import chain
+from typing import NamedTuple
+
+from grader.base.errors import NotDecided
+from grader.base.names import near
+from grader.base.source import Location
+from grader.base.text import enumerated, quoted
+from grader.ros.installation.manifest_conditions import evaluate_condition
+from grader.ros.known.package_rows import package_row
+from grader.ros.known.released import (
+    is_released,
+    released_date,
+    released_packages,
+    releases_of,
+    rosdep_keys,
+)
+from grader.ros.known.releases import other_name
+from grader.ros.known.rosdep_words import rosdep_words
+from grader.ros.package.package import MANIFEST, Package
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import (
+    Compared,
+    Fact,
+    Mismatch,
+    corrections,
+    cost_of_guess,
+)
+from grader.workspace.rules.rule_table import PACKAGE_EXISTS, ROSDEP_KEY
+from grader.workspace.rules.used_packages import calls_in, named_in_robots
+
+_DEPENDENCY = re.compile(r"<(?P<tag>\w*depend)(?P<attributes>\s[^<>]*)?>\s*(?P<name>[^<>\s]+)\s*</")
+_CONDITION = re.compile(r"\bcondition\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_GROUP = "group_depend"
+_MAX_DIFFERENT = 2  # letters in the length of two similar names
+_MAX_FOUND = 40  # packages of a workspace, beyond which others may not be read
+# Words of names that say nothing of the robot: my_robot_description.
+_OF_TEMPLATES = frozenset({"my", "robot", "ros", "ros2", "bot"})
+
+
+def provision_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the keys that rosdep does not know, and packages that nothing has."""
+    for package in workspace.packages:
+        manifest = package.manifest
+        if manifest is not None and not manifest.refusals and not package.is_of_ros1:
+            yield from _unknown_keys(workspace, package)
+    yield from _absent_packages(workspace)
+
+
+def _unknown_keys(workspace: Workspace, package: Package) -> Iterator[Fact]:
+    """Yield the dependencies of a package that rosdep cannot install.
+
+    It is a note where the name may be that of a package that is built from source.
+    """
+    assert package.manifest is not None
+    for source in workspace.texts.sources_of(package, (MANIFEST,)):
+        if source.path != package.path(MANIFEST):
+            continue
+        for match in _DEPENDENCY.finditer(source.text):
+            name, condition = match["name"], _CONDITION.search(match["attributes"] or "")
+            is_left_out = match["tag"] == _GROUP or name not in package.manifest.dependencies
+            if condition is not None:
+                held = evaluate_condition(condition[1] or condition[2])
+                is_left_out = is_left_out or held is not True
+            if is_left_out or package.find(name) is not None:
+                continue
+            yield Compared("keys")
+            wrong = _wrong_key(workspace, name, source.at(match.start("name")))
+            if wrong is not None:
+                yield wrong
+
+
+def _wrong_key(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
+    """Return what is wrong with a dependency that the workspace does not have."""
+    if name in rosdep_keys() or workspace.texts.is_provided(name):
+        return None
+    if is_released(name):
+        return _of_other_release(workspace, name, at)
+    no_key = f"rosdep has no key {quoted(name)}"
+    words = rosdep_words()
+    if name in words.elsewhere:
+        message = f"{no_key}: delete the line; {words.elsewhere[name]}"
+        return Mismatch(ROSDEP_KEY, message, at, word=name)
+    own_names = [package.name for package in workspace.packages]
+    workspace.charge(cost_of_guess(len(own_names)))
+    meant = words.instead.get(name) or near(name, own_names) or _near_key(workspace, name)
+    if meant is not None:
+        message = f"{no_key}, so rosdep install stops; did you mean {quoted(meant)}?"
+        either = corrections(name, at, meant)
+        return Mismatch(ROSDEP_KEY, message, at, corrections=either, word=name)
+    if _is_of_family(name, own_names):
+        return None
+    message = (
+        f"{no_key}, and neither the workspace nor a release of ROS 2 ({released_date()}) has such "
+        "a package: rosdep install stops, unless it is told to skip the name"
+    )
+    return Mismatch(ROSDEP_KEY, message, at, is_certain=False, word=name)
+
+
+def _is_of_family(name: str, others: Sequence[str]) -> bool:
+    """Return whether a name begins as that of a package of the workspace: arm_msgs and arm_driver.
+
+    Such a package is one of the same project, of which only a part is inspected.
+    """
+    first = name.partition("_")[0]
+    if first in _OF_TEMPLATES:
+        first = name.rpartition("_")[0]
+    return any(other == first or other.startswith(f"{first}_") for other in others)
+
+
+def _of_other_release(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
+    """Return that only other releases than those of the workspace have a package."""
+    stated = workspace.releases
+    if not stated or "rolling" in stated or is_released(name, stated):
+        return None  # what Rolling lacks, it may have again
+    if other_name("package", name, {*stated}) is not None:
+        return None  # which is said of its own
+    having = enumerated([release.title() for release in releases_of(name)])
+    wanted = enumerated([release.title() for release in stated], word="or")
+    message = (
+        f"the package {quoted(name)} is released for {having}, and not for {wanted} "
+        f"({released_date()}): rosdep install stops"
+    )
+    return Mismatch(ROSDEP_KEY, message, at, is_certain=False, word=name)
+
+
+def _near_key(workspace: Workspace, name: str) -> str | None:
+    """Return the key of rosdep, or the released package, that a name surely stands for.
+
+    Names of apt that have no key are similar to those of other libraries.
+    """
+    if name.startswith("lib"):
+        return None
+    first = name[:1].lower()
+    alike = []
+    for known in chain(rosdep_keys(), released_packages()):
+        if known[0] == first and abs(len(known) - len(name)) <= _MAX_DIFFERENT:
+            alike.append(known)
+    workspace.charge(cost_of_guess(len(alike)))
+    return near(name, alike)
+
+
+class _NamedPackage(NamedTuple):
+    """A package that a file names, and where.
+
+    `is_compared`: whether the rule of files compares a similar name.
+    """
+
+    name: str
+    location: Location
+    is_compared: bool = True
+
+
+def _absent_packages(workspace: Workspace) -> Iterator[Fact]:
+    """Yield packages that files name, and that neither the workspace nor a release has.
+
+    Each is yielded once. It is an error where a package of the workspace is called alike, and
+    nothing says that the other one exists.
+    """
+    folder = workspace.folder
+    if len(folder.found_packages) >= _MAX_FOUND or folder.tree.ignored:
+        return
+    declared: set[str] = set()
+    for package in folder.found_packages:
+        if package.manifest is not None:
+            declared |= package.manifest.dependencies
+    seen: set[str] = set()
+    for package in workspace.packages:
+        for named in _named_by(workspace, package):
+            if named.name in seen:
+                continue
+            seen.add(named.name)
+            if not _may_exist(workspace, package, named.name, declared):
+                yield from _absent(workspace, named)
+
+
+def _named_by(workspace: Workspace, package: Package) -> Iterator[_NamedPackage]:
+    """Yield the packages that launch files, code and robots of a package name."""
+    launched = set()
+    for owner, path, launch in workspace.launches.files:
+        if owner is package:
+            launched.add(package.path(path))
+            for node in launch.nodes:
+                if not node.included_by and node.location.path == package.path(path):
+                    yield _NamedPackage(node.package, node.location)
+    texts = workspace.texts
+    for source in texts.launch_sources(package):
+        if source.path in launched:
+            yield from (_NamedPackage(name, at) for name, at in calls_in(source))
+    for source in texts.sources_of(package, (".py", ".cpp", ".hpp")):
+        if source.path not in launched:
+            for name, at in calls_in(source):
+                yield _NamedPackage(name, at, is_compared=False)
+    yield from (_NamedPackage(name, at) for name, at in named_in_robots(workspace, package))
+
+
+def _may_exist(workspace: Workspace, package: Package, name: str, declared: set[str]) -> bool:
+    """Return whether something says that a package exists."""
+    if package.find(name) is not None or is_released(name) or name in declared:
+        return True
+    if name in package.installed_besides or not re.fullmatch(r"[a-z]\w*", name):
+        return True
+    folders = [other.folder.rpartition("/")[2] for other in workspace.folder.found_packages]
+    row = package_row(name)
+    if row.programs or row.launch or name in folders or workspace.folder.absent_submodules:
+        return True
+    if any(other.name == name for other in workspace.folder.found_packages):
+        return True  # one that colcon ignores
+    try:
+        return workspace.texts.is_provided(name, in_words=True)
+    except NotDecided:
+        return True
+
+
+def _absent(workspace: Workspace, named: _NamedPackage) -> Iterator[Mismatch]:
+    """Yield that a package is not there, unless the rule of files says it."""
+    name, at = named.name, named.location
+    names = [package.name for package in workspace.packages]
+    workspace.charge(cost_of_guess(len(names)))
+    meant = near(name, names)
+    if meant is not None and named.is_compared:
+        return
+    meant = meant or _package_meant(name, names)
+    if meant is not None:
+        message = f"there is no package {quoted(name)}; did you mean {quoted(meant)}?"
+        either = corrections(name, at, meant)
+        yield Mismatch(PACKAGE_EXISTS, message, at, corrections=either, word=name)
+        return
+    message = (
+        f"neither the workspace nor a release of ROS 2 ({released_date()}) has the package "
+        f"{quoted(name)}, and no package.xml declares it"
+    )
+    released = _near_key(workspace, name)
+    if released is not None:
+        message += f"; did you mean {quoted(released)}?"
+    either = corrections(name, at, released)
+    yield Mismatch(PACKAGE_EXISTS, message, at, None, False, either, word=name)
+
+
+def _package_meant(name: str, names: Sequence[str]) -> str | None:
+    """Return the package of the workspace that a name surely means, which is not similar.
+
+    It is the only one with the same last word, as `description`, if it has another word
+    of the name, or that has no word of its own, as in my_robot_description.
+    """
+    *words, kind = name.split("_")
+    if not words:
+        return None
+    alike = [other for other in names if other.rpartition("_")[2] == kind and other != kind]
+    own_words = {*words} - _OF_TEMPLATES
+    if own_words:
+        alike = [other for other in alike if not own_words.isdisjoint(other.split("_"))]
+    return alike[0] if len(alike) == 1 else None

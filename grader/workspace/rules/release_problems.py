@@ -1,0 +1,186 @@
+"""Names of other releases of ROS 2 than those that a workspace is for."""
+
+import re
+from collections.abc import Iterator, Mapping
+
+from grader.base.errors import NotDecided
+from grader.base.problems import Problem
+from grader.base.source import Location
+from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.config.yaml_values import sections_in, values_in
+from grader.ros.known.releases import NameKind, names_without, other_name
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.nodes.node_facts import NodeFacts
+from grader.workspace.graph.started_controllers import defined_controllers
+from grader.workspace.model.stated_releases import deciding_launch_files, releases_in_path
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.model.workspace_folder import TOO_MUCH
+from grader.workspace.rules.name_problems import name_problems
+from grader.workspace.rules.names import Agreement
+from grader.workspace.rules.reading import read_agreement
+from grader.workspace.rules.rule_table import NAME_RELEASE, NAMES_COMPARED
+
+_DEPENDENCY = re.compile(r"<\w*depend>\s*([\w-]+)\s*</")
+_CPP = (".cpp", ".cc", ".cxx", ".hpp", ".h")
+_PLUGIN_KEYS = ("plugin", "robot_model_type")
+
+
+def compared_names(workspace: Workspace) -> Iterator[Problem]:
+    """Yield the names of a workspace that do not agree, then those of other releases."""
+    agreement = read_agreement(workspace)
+    yield from name_problems(workspace)
+    try:
+        yield from _release_problems(workspace, agreement)
+    except NotDecided:
+        assert workspace.folder.is_spent
+    if workspace.folder.is_spent:
+        start = Location(next(iter(workspace.tree.files), ""), 1, 1)
+        yield NAMES_COMPARED.problem(f"not all names are compared: {TOO_MUCH}", start)
+
+
+def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Problem]:
+    """Return the names that no stated release has, each once in a file.
+
+    Those that are said not to agree are not among them.
+    """
+    if not workspace.releases:
+        return []
+    said = {
+        mismatch.location for mismatch in agreement.mismatches if mismatch.family != "dependencies"
+    }
+    deciding = deciding_launch_files(workspace)
+    problems: dict[tuple[str, str], Problem] = {}
+    for reader in _READERS:
+        for kind, name, at, owner in reader(workspace):
+            if at in said or at.path in deciding:
+                continue
+            releases = {*workspace.releases, *releases_in_path(at.path)}
+            other = other_name(kind, name, releases, shown=owner)
+            if other is not None:
+                problem = NAME_RELEASE.problem(other.message, at, kind)
+                problems.setdefault((other.message, at.path), problem)
+    return sorted(
+        problems.values(),
+        key=lambda release_problem: (
+            release_problem.location.path,
+            release_problem.location.line,
+            release_problem.location.column,
+        ),
+    )
+
+
+_Use = tuple[NameKind, str, Location, str]  # with the start of the name that is not shown
+
+
+def _uses_in_robots(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the plugins of Gazebo and of ros2_control that robots load, but for own ones."""
+    own_packages = [package.name for package in workspace.packages]
+    for robot in workspace.robots.known:
+        for element in robot.root.iter("plugin"):
+            name = element.get("filename", "") or (element.text or "").strip()
+            package = name.partition("/")[0].removeprefix("lib").removesuffix(".so")
+            if package not in own_packages:
+                yield "plugin", name, robot.place(element), ""
+
+
+def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the plugins, controllers and parameters in YAML files."""
+    types: dict[str, str] = {}
+    for controller in defined_controllers(workspace):
+        types[controller.name] = controller.type.text or ""
+        if not workspace.texts.has_plugin(types[controller.name]):
+            yield "controller", types[controller.name], controller.location, ""
+    for _, tree in workspace.installed.trees:
+        for value in values_in(tree):
+            if value.keys and value.keys[-1] in _PLUGIN_KEYS:
+                yield "plugin", value.node.text or "", value.node.location, ""
+        yield from _parameters_in(tree, types)
+
+
+def _parameters_in(tree: YamlNode, types: Mapping[str, str]) -> Iterator[_Use]:
+    """Yield the parameters in a YAML file, of the types that controllers have by their names."""
+    for keys, section in sections_in(tree):
+        name = keys[-1].rpartition("/")[2] if keys else ""
+        owner = f"{types.get(name, name)}/"
+        for value in values_in(section):
+            yield "parameter", owner + ".".join(value.keys), value.node.location, owner
+
+
+def _uses_in_launch_files(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the packages, programs and launch files in launch files."""
+    for package, node in workspace.launches.nodes:
+        if package.find(node.package) is None:
+            yield "package", node.package, node.location, ""
+            owner = f"{node.package}/"
+            yield "program", f"{owner}{node.executable}", node.location, owner
+    for package, _, launch in workspace.launches.files:
+        for passed in launch.passed:
+            parts = passed.path.split("/")
+            if parts[0] == "share" and len(parts) > 1 and package.find(parts[1]) is None:
+                yield "package", parts[1], passed.location, ""
+                owner = f"{parts[1]}/"
+                yield "launch file", owner + parts[-1], passed.location, owner
+
+
+def _topics_of_controllers(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the topics that are those of controllers, by their names."""
+    types = {defined.name: defined.type.text or "" for defined in defined_controllers(workspace)}
+    for topic, at in _topics(workspace):
+        controller, _, last = topic.strip("/ ").rpartition("/")
+        owner = f"{types.get(controller.rpartition('/')[2], '')}/"
+        yield "topic", owner + last, at, owner
+
+
+def _topics(workspace: Workspace) -> Iterator[tuple[str, Location]]:
+    """Yield the topics that remappings and own nodes in Python name."""
+    for robot in workspace.robots.known:
+        for element in robot.root.iter("remapping"):
+            for topic in (element.text or "").split(":="):
+                yield topic, robot.place(element)
+    for _, node in workspace.launches.nodes:
+        for names in node.remaps or ():
+            yield from ((topic, node.location) for topic in names)
+        facts = workspace.code.own_node(node)
+        if facts is not None:
+            yield from _topics_of_node(node, facts)
+
+
+def _topics_of_node(node: StartedNode, facts: NodeFacts) -> Iterator[tuple[str, Location]]:
+    """Yield the topics that the code of a node opens, as the launch file names them."""
+    for endpoint in facts.endpoints:
+        yield node.topic(endpoint.name or "") or "", endpoint.location
+
+
+def _declared(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the packages that package.xml declares without a condition."""
+    for package in workspace.packages:
+        manifest = package.manifest
+        if manifest is None:
+            continue
+        for match in _DEPENDENCY.finditer(manifest.source.text):
+            name = match[1]
+            if name in manifest.dependencies and package.find(name) is None:
+                yield "package", name, manifest.source.at(match.start(1)), ""
+
+
+def _uses_in_code(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the classes in C++ that no stated release has; the others are not looked for."""
+    names = names_without("class", workspace.releases)
+    if not names:
+        return
+    pattern = re.compile(rf"//[^\n]*|/\*.*?(?:\*/|\Z)|\b({'|'.join(names)})\b", re.DOTALL)
+    for package in workspace.packages:
+        for source in workspace.texts.sources_of(package, _CPP):
+            for match in pattern.finditer(source.text):
+                if match[1] is not None:  # not of a comment
+                    yield "class", match[1], source.at(match.start()), ""
+
+
+_READERS = (
+    _uses_in_code,
+    _uses_in_robots,
+    _uses_in_yaml,
+    _uses_in_launch_files,
+    _topics_of_controllers,
+    _declared,
+)

@@ -1,0 +1,129 @@
+"""Renamed nodes: parameter files whose keys are the names that programs give their nodes.
+
+A launch file gives such a node another name.
+"""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.config.yaml_values import keys_of_sections
+from grader.ros.known.package_rows import package_row
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.node_parameters import is_key_of
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch, corrections
+from grader.workspace.rules.rule_table import (
+    NODE_SECTION,
+)
+
+_ANY_NAMES = ("*", "**")
+_Keys = Mapping[str, tuple[str, ...]]  # of the sections of a file, by the full names that they are
+
+
+def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the sections named after a node's name in its program, where it is renamed.
+
+    The launch file renames the node: rcl compares the new name, so the node gets none of them.
+
+    What components get is not evaluated; a container gives them the files that it gets itself. The
+    nodes of a launch file to which a file is passed may read its sections.
+    """
+    with_components: set[int] = set()
+    for launch, (_, root) in enumerate(workspace.launches.roots):
+        if any(component.has_parameters for component in root.components):
+            with_components.add(launch)
+    for (path, launch), nodes in _nodes_by_file(workspace).items():
+        tree, others = workspace.installed.yaml.get(path), workspace.parameters.files[path]
+        workspace.charge(len(others))
+        has_container = any(package_row(node.package).holds_nodes for node in others)
+        is_open = has_container or path in workspace.installed.passed_files
+        if not isinstance(tree, YamlNode) or launch in with_components or is_open:
+            continue
+        elsewhere = _names_read(workspace, others)
+        if with_components:
+            elsewhere.add(None)
+        yield from _unread_sections(workspace, tree, nodes, elsewhere)
+
+
+def _nodes_by_file(workspace: Workspace) -> Mapping[tuple[str, int], list[StartedNode]]:
+    """Return the nodes that get each parameter file in each launch file."""
+    given: dict[tuple[str, int], list[StartedNode]] = {}
+    for launch, node in workspace.launches.launched:
+        for path in dict.fromkeys(workspace.parameters.files_given(node)):
+            given.setdefault((path, launch), []).append(node)
+    return given
+
+
+def _unread_sections(
+    workspace: Workspace,
+    tree: YamlNode,
+    nodes: Sequence[StartedNode],
+    elsewhere: Collection[str | None],
+) -> Iterator[Compared | Mismatch]:
+    """Yield the sections that no node of a launch file gets, for nodes of that name.
+
+    A node would get one by the name of its program. If it gets another section of the file, one
+    that a node of any launch file reads is not reported: `elsewhere` are the names of these
+    nodes.
+    """
+    keys = keys_of_sections(tree)
+    workspace.charge(len(nodes) * (1 + len(keys)))
+    read = _names_read(workspace, nodes)
+    unread = []
+    for node in nodes:
+        key = key_of_program_name(workspace, node, keys)
+        full = node.full_name(node.node_name or "")
+        names = elsewhere if any(is_key_of(section_key, full) for section_key in keys) else read
+        if key is not None and None not in names and key.rpartition("/")[2] not in names:
+            unread.append((node, key))
+    for node, key in unread:
+        yield Compared("parameters")
+        at = tree.key_location(*keys[key])
+        is_read_elsewhere = key.rpartition("/")[2] in elsewhere
+        yield _unread_section(node, key, at, is_only=len(unread) == 1, is_read=is_read_elsewhere)
+
+
+def _unread_section(
+    node: StartedNode, key: str, at: Location, *, is_only: bool, is_read: bool
+) -> Mismatch:
+    """Return that a node ignores a section, which another node of another launch file may read."""
+    old, name = key.rpartition("/")[2], node.node_name or ""
+    advice = "add a section" if is_read else "rename the section to"
+    message = (
+        f"the launch file names this node {name!r}, so it ignores the section {quoted(old)}, "
+        f"its name in its program: {advice} {quoted(name)}"
+    )
+    either = corrections(old, at, name if is_only and not is_read else None)
+    return Mismatch(NODE_SECTION, message, at, node.location, node.when is True, either)
+
+
+def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str | None]:
+    """Return the names of nodes and of those that they make in their processes.
+
+    None is among them where one is not known.
+    """
+    names: set[str | None] = set()
+    for name in {workspace.code.name_of(node) for node in nodes}:
+        names |= {name, *workspace.code.children_of(name or "")}
+    return names
+
+
+def key_of_program_name(workspace: Workspace, node: StartedNode, keys: _Keys) -> str | None:
+    """Return the section that a node would get if it had the name of its program.
+
+    The result is None where there is none, or one for the name that it has.
+    """
+    name, old = node.node_name, workspace.code.name_in_program(node)
+    if not name or not old or name == old or node.namespace is None:
+        return None
+    full, full_name = node.full_name(name), node.full_name(old)
+    found_key = None
+    for key in keys:
+        last = key.rpartition("/")[2]
+        if last == name or (last not in _ANY_NAMES and is_key_of(key, full)):
+            return None
+        if last == old and is_key_of(key, full_name):
+            found_key = key
+    return found_key

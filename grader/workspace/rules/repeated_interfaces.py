@@ -1,0 +1,34 @@
+"""Command interfaces of joints that several <ros2_control> of a robot have."""
+
+from collections.abc import Iterator
+
+from grader.ros.xml.parsing import Element
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.rule_table import INTERFACE_ONCE
+
+
+def repeated_interface_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the joints whose commands two systems of a robot take.
+
+    Newer controller managers load no such robot, older ones use the first of them.
+    """
+    for robot in workspace.robots.known:
+        owners: dict[str, Element] = {}
+        for system in robot.systems:
+            yield Compared("controllers")
+            repeated: list[str] = []
+            for joint in system.iterchildren("joint"):
+                for interface in joint.iterchildren("command_interface"):
+                    name = f"{joint.get('name', '')}/{interface.get('name', '')}"
+                    if owners.setdefault(name, system) is not system:
+                        repeated.append(name)
+            if repeated:
+                first = owners[repeated[0]]
+                message = (
+                    f"<ros2_control> {system.get('name', '')!r} has the command interface "
+                    f"{repeated[0]!r}, which {first.get('name', '')!r} has as well: one robot has "
+                    "each once"
+                )
+                at, other = robot.place(system), robot.place(first)
+                yield warning(INTERFACE_ONCE, message, at, other)

@@ -1,0 +1,120 @@
+"""Rows of a bridge for which Gazebo runs no system, and odometry that no row takes to tf2.
+
+Only where all robots, models and worlds are read, and all systems in them are known.
+"""
+
+from collections.abc import Collection, Iterator, Mapping
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
+from grader.workspace.graph.bridge_rows import BRIDGE, BridgeRow, bridge_rows
+from grader.workspace.graph.gazebo_topics import roots, system_of
+from grader.workspace.graph.graph import graph_of
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.bridges import has_unread_topics
+from grader.workspace.rules.frames import openings
+from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.rule_table import BRIDGE_SYSTEM, ODOMETRY_BRIDGED
+
+_TRANSFORMS = "tf2_msgs.msg.TFMessage"
+# Programs of ros_gz that publish no transform but those of rows.
+_WITHOUT_TRANSFORMS = ("create", "parameter_bridge")
+_ODOM = "odom"  # the parent of the transform of a system that names none
+
+
+class _Need(NamedTuple):
+    """What takes or sends the messages of a type in Gazebo."""
+
+    systems: Collection[str]
+    what: str
+
+
+def simulated_topic_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield rows without a system, and odometry without a row."""
+    rows = [row for row in bridge_rows(workspace) if row.is_used]
+    creates = any(node.executable == "create" for _, node in workspace.launches.nodes)
+    if not rows or not creates or has_unread_topics(workspace):
+        return
+    systems = _systems(workspace)
+    yield Compared("topics")
+    yield from _without_system(rows, systems)
+    yield from _odometry(workspace, rows)
+
+
+def _systems(workspace: Workspace) -> Mapping[str, Location]:
+    """Return the systems of robots, models and worlds, without those of windows."""
+    systems: dict[str, Location] = {}
+    for root, place in roots(workspace):
+        for plugin in root.iter("plugin"):
+            if not any(above.tag == "gui" for above in plugin.iterancestors()):
+                systems.setdefault(system_of(plugin), place(plugin))
+    return systems
+
+
+def _needs() -> Mapping[str, _Need]:
+    odometry = (*gazebo().odometry_systems, "OdometryPublisher")
+    return {
+        "gz.msgs.Twist": _Need((), "takes commands"),
+        "gz.msgs.Model": _Need(("JointStatePublisher",), "sends the positions of joints"),
+        "gz.msgs.Odometry": _Need(odometry, "sends odometry"),
+    }
+
+
+def _without_system(
+    rows: Collection[BridgeRow], systems: Mapping[str, Location]
+) -> Iterator[Mismatch]:
+    """Yield the rows whose messages no system takes or sends."""
+    for row in rows:
+        need = _needs().get(row.gz_type)
+        is_input = row.gz_type == "gz.msgs.Twist"
+        if need is None or (is_input and not row.is_read) or (not is_input and row.is_read):
+            continue
+        passive = gazebo().passive_systems.difference(need.systems)
+        if passive.issuperset(systems):
+            message = (
+                f"no system of Gazebo {need.what}, so this row of {quoted(row.gz)} brings "
+                "nothing: the robot needs a <plugin> for it"
+            )
+            yield warning(BRIDGE_SYSTEM, message, row.location)
+
+
+def _odometry(workspace: Workspace, rows: Collection[BridgeRow]) -> Iterator[Mismatch]:
+    """Yield the fixed frame of RViz that Gazebo publishes, and that no row takes to tf2."""
+    if any(row.ros_type == _TRANSFORMS for row in rows) or _has_more_bridges(workspace):
+        return
+    if any(fact.kind == "frame" for fact in openings(workspace)):
+        return
+    frames = set[str]()
+    for edge in graph_of(workspace).edges:
+        if not edge.is_known and edge.by not in _WITHOUT_TRANSFORMS:
+            return
+        frames |= {edge.parent.removeprefix("/"), edge.child.removeprefix("/")}
+    for parent, by, at in _parents(workspace):
+        for package in workspace.packages:
+            for file in map(package.rviz, package.rviz_files):
+                if file.fixed_frame == parent and parent not in frames:
+                    message = (
+                        f"the system {by} publishes the transform of {quoted(parent)} in Gazebo "
+                        "only: no row of a bridge takes it to /tf"
+                    )
+                    yield warning(ODOMETRY_BRIDGED, message, file.frame_location, at)
+
+
+def _has_more_bridges(workspace: Workspace) -> bool:
+    """Return whether a bridge may have other rows, or publish them under other names."""
+    return any(
+        node.package == BRIDGE and (node.remaps != () or node.parameters is None)
+        for _, node in workspace.launches.nodes
+    )
+
+
+def _parents(workspace: Workspace) -> Iterator[tuple[str, str, Location]]:
+    """Yield the parents of the transforms of systems, with their systems and places."""
+    for root, place in roots(workspace):
+        for plugin in root.iter("plugin"):
+            frames = gazebo().system.get(system_of(plugin), NO_SYSTEM).transform
+            if frames is not None:
+                parent = (plugin.findtext(frames.parent) or _ODOM).strip()
+                yield parent, system_of(plugin), place(plugin)

@@ -1,0 +1,343 @@
+"""Spawners: whether the controllers and the controller manager that they name exist.
+
+It is compared as well whether each controller is started.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from grader.base.names import near
+from grader.base.text import enumerated, quoted
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode
+from grader.ros.config.yaml_values import sections_in
+from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.launch.node_parameters import controllers_of
+from grader.ros.package.package import Package
+from grader.workspace.graph.compared_robots import robots_for_launch
+from grader.workspace.graph.started_controllers import Controller, defined_controllers
+from grader.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import (
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Use,
+    corrections,
+)
+from grader.workspace.rules.rule_table import (
+    CONTROLLER_STARTED,
+    MANAGER_PARAMETERS,
+    MANAGER_SECTION,
+    SPAWNER_MANAGER,
+)
+
+_OTHER_TYPES = re.compile(r"load_controller|(?<![<-])\bparam\b(?!-)")  # of commands that set a type
+_OTHER_STARTS = re.compile(r"(load|switch|set)_controller|(Load|Switch)Controller")
+_OF_GAZEBO = ("gz_ros2_control/", "ign_ros2_control/", "gazebo_ros2_control/")  # hardware
+_MAX_CONTROLLERS = 3  # in a message
+
+
+def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers that spawners load, and what keeps controllers from being loaded."""
+    misspelt = list(_misspelt_managers(workspace))
+    if misspelt:
+        yield from misspelt
+        return
+    controllers = list(defined_controllers(workspace))
+    if not controllers:
+        yield from _no_controllers(workspace)
+        yield from _without_plugin(workspace)
+        return
+    if any(isinstance(tree, YamlFault) for tree in workspace.installed.yaml.values()):
+        yield Open("controller", reason="a parameter file cannot be read")
+    # Without a controller manager, the robot's driver starts one, with controllers of its own.
+    if not workspace.robots.has_controller_manager:
+        yield Open("controller")
+    yield from _names_in_spawners(workspace)
+    yield from _without_plugin(workspace)
+    for package, launch in workspace.launches.roots:
+        yield from _without_type(workspace, package, launch, controllers)
+    yield from _not_started(workspace, controllers)
+
+
+def _without_plugin(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that a spawner waits for the controller manager of a simulation that starts none.
+
+    <ros2_control> names the hardware of Gazebo, which its plugin in <gazebo> loads.
+    """
+    if workspace.robots.has_controller_manager or workspace.robots.may_be_others:
+        return
+    for number, (_, launch) in enumerate(workspace.launches.roots):
+        spawners = [node for node in launch.nodes if _is_spawner(node)]
+        systems = [
+            robot.place(system)
+            for robot in robots_for_launch(workspace, number).robots
+            for system in robot.systems
+            if system.findtext("hardware/plugin", "").strip().startswith(_OF_GAZEBO)
+        ]
+        if spawners and systems:
+            message = (
+                "no plugin in <gazebo> loads this hardware and starts the controller manager, for "
+                f"which the spawner waits ({spawners[0].location.file_and_line}): add that of "
+                "gz_ros2_control"
+            )
+            is_certain = not launch.more
+            yield Mismatch(
+                SPAWNER_MANAGER, message, systems[0], spawners[0].location, is_certain=is_certain
+            )
+
+
+def _names_in_spawners(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers that spawners name, and managers that they surely misspell.
+
+    Where the launch file of a spawner starts no controller manager, that of a robot's driver may
+    have controllers of its own.
+    """
+    for number, (_, launch) in enumerate(workspace.launches.roots):
+        spawners = [node for node in launch.nodes if _is_spawner(node)]
+        spawners = [
+            node for node in spawners if _is_defined_by_files(workspace, node.arguments or ())
+        ]
+        owner = ""
+        if spawners and not _has_manager(workspace, number, launch):
+            owner = f"launch {number}"
+            yield Open("controller", owner)
+            for controller in defined_controllers(workspace):
+                yield Definition("controller", controller.name, controller.location, owner)
+        for node in spawners:
+            for name in _named(node.arguments or ()):
+                yield Use("controller", name, node.location, "spawner", owner)
+            yield from _managers_named(workspace, node)
+
+
+def _has_manager(workspace: Workspace, number: int, launch: Launch) -> bool:
+    """Return whether a launch file starts a controller manager, or its robot has one in Gazebo."""
+    if any(_is_manager(node) for node in launch.nodes):
+        return True
+    robots = robots_for_launch(workspace, number).robots
+    return any(robot.has_controller_manager for robot in robots)
+
+
+def _is_spawner(node: StartedNode) -> bool:
+    return node.package == MANAGER and node.executable in SPAWNERS
+
+
+def _named(words: Sequence[str | None]) -> Iterator[str]:
+    """Yield the controllers before the options of a spawner."""
+    for word in words:
+        if word is None or word.startswith("-"):
+            return
+        yield from word.split()
+
+
+def _is_defined_by_files(workspace: Workspace, words: Sequence[str | None]) -> bool:
+    """Return whether files of the workspace define the controllers of a spawner.
+
+    Otherwise, its arguments define them.
+    """
+    files = [path for option, path in pairwise(words) if option in ("-p", "--param-file")]
+    return not _is_typed(words) and all(
+        path is not None and workspace.installed.source_of(path) is not None for path in files
+    )
+
+
+def _is_typed(words: Sequence[str | None]) -> bool:
+    return any(word and word.startswith(("-t", "--controller-t")) for word in words)
+
+
+def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact]:
+    """Yield the controller manager that a spawner waits for, if it means another one.
+
+    It surely stands for another one.
+    """
+    managers = {
+        workspace.code.name_of(node): node.location
+        for _, node in workspace.launches.nodes
+        if _is_manager(node)
+    }
+    for option, word in pairwise(spawner.arguments or ()):
+        if option not in ("-c", "--controller-manager"):
+            continue
+        name = (word or "").rpartition("/")[2]
+        meant = near(name, filter(None, managers)) if name not in managers else None
+        if meant is not None:
+            at = managers[meant]
+            message = (
+                f"spawner: there is no controller manager {name!r}; did you mean {meant!r} "
+                f"({at.file_and_line})?"
+            )
+            either = corrections(name, spawner.location, meant)
+            yield Mismatch(SPAWNER_MANAGER, message, spawner.location, at, corrections=either)
+
+
+def _is_manager(node: StartedNode) -> bool:
+    return node.executable == CONTROL_NODE
+
+
+def _without_type(
+    workspace: Workspace, package: Package, launch: Launch, controllers: Sequence[Controller]
+) -> Iterator[Fact]:
+    """Yield the controllers whose types are in files or sections that nothing reads.
+
+    The controller manager reads its own section of its files, and a spawner that of its controller.
+    """
+    manager, lacks_type = _controllers_without_type(workspace, package, launch)
+    if manager is None or _OTHER_TYPES.search(launch.source.text):
+        return
+    files = [
+        workspace.installed.source_of(each.path) for each in manager.parameters or () if each.path
+    ]
+    lacking = [controller for controller in controllers if controller.name in lacks_type]
+    elsewhere = [controller for controller in lacking if controller.location.path not in files]
+    if elsewhere:
+        at = elsewhere[0].location
+        text = (
+            "the controller manager is not given the parameters with the type of "
+            f"{_names_of(elsewhere)} ({at.file_and_line})"
+        )
+        yield Mismatch(MANAGER_PARAMETERS, text, manager.location, at)
+        return
+    for controller in lacking:
+        if controller.is_own:
+            text = (
+                f"only a spawner with --param-file reads the type of {quoted(controller.name)} "
+                f"here: give its spawner this file, or write the type below {MANAGER}"
+            )
+            yield Mismatch(MANAGER_PARAMETERS, text, controller.location, manager.location)
+
+
+def _controllers_without_type(
+    workspace: Workspace, package: Package, launch: Launch
+) -> tuple[StartedNode | None, set[str | None]]:
+    """Return the controller manager of a launch file, and its controllers without a type.
+
+    They are the controllers that spawners start and whose type neither of them is given. The
+    result is None where this is not known.
+    """
+    managers = [node for node in launch.nodes if _is_manager(node) and node.when]
+    if len(managers) != 1:
+        return None, set()
+    [manager] = managers
+    given = workspace.parameters.given_to(package, manager)
+    if given.unknown:
+        return None, set()
+    lacks_type: dict[str | None, bool] = {}  # by the names of the controllers that are started
+    for controller in _spawned_without_parameters(launch):
+        own_parameters = workspace.parameters.read(package, controller, "")
+        has_type = "type" in own_parameters.values or f"{controller.node_name}.type" in given.values
+        is_first = lacks_type.get(controller.node_name, True)  # one of its spawners may set it
+        lacks_type[controller.node_name] = is_first and not own_parameters.unknown and not has_type
+    return manager, {name for name, lacks in lacks_type.items() if lacks}
+
+
+def _spawned_without_parameters(launch: Launch) -> Iterator[StartedNode]:
+    """Yield the controllers of a launch file's spawners that get no parameters and no type.
+
+    In later releases, spawners hand on their own parameters.
+    """
+    for spawner in launch.nodes:
+        is_plain = spawner.parameters == () and not _is_typed(spawner.arguments or ())
+        if _is_spawner(spawner) and spawner.when and is_plain:
+            yield from controllers_of(spawner) or ()
+
+
+def _misspelt_managers(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the sections of types of controllers that are called nearly as the manager.
+
+    They are yielded where none is called as the controller manager.
+    """
+    if not any(_is_spawner(node) for _, node in workspace.launches.nodes):
+        return
+    sections = []
+    for _, tree in workspace.installed.trees:
+        for keys, section in sections_in(tree):
+            name = keys[-1].rpartition("/")[2] if keys else ""
+            if name == MANAGER:
+                return
+            if near(name, (MANAGER,)) is not None and _has_types(section):
+                sections.append((name, tree.key_location(*keys)))
+    for name, at in sections:
+        message = (
+            f"the controller manager does not read the types below {name!r}; did you mean "
+            f"{MANAGER!r}?"
+        )
+        yield Mismatch(MANAGER_SECTION, message, at, corrections=corrections(name, at, MANAGER))
+
+
+def _has_types(section: YamlNode) -> bool:
+    """Return whether parameters have the types of controllers."""
+    inner = section.value.values() if isinstance(section.value, dict) else ()
+    types = [kind for node in inner if (kind := node.get("type")) is not None]
+    return any("/" in (kind.text or "") for kind in types)
+
+
+def _no_controllers(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the controllers that spawners start while no file has any, as an empty one."""
+    if any(isinstance(tree, YamlFault) for tree in workspace.installed.yaml.values()):
+        return
+    for package, launch in workspace.launches.roots:
+        manager, lacking = _controllers_without_type(workspace, package, launch)
+        if manager is not None and lacking:
+            quoted_names = [quoted(name) for name in sorted(filter(None, lacking))]
+            names = enumerated(quoted_names, _MAX_CONTROLLERS)
+            message = f"no parameter file of the controller manager has the type of {names}"
+            yield Mismatch(MANAGER_PARAMETERS, message, manager.location)
+
+
+def _names_of(controllers: Sequence[Controller], word: str = "and") -> str:
+    names = dict.fromkeys(quoted(controller.name) for controller in controllers)
+    return enumerated(names, _MAX_CONTROLLERS, word)
+
+
+def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Iterator[Fact]:
+    """Yield the controllers that publish, or that move joints, where none is spawned."""
+    spawned = started_controllers(workspace)
+    if spawned is None:
+        return
+    given_files = {*workspace.parameters.files, *workspace.parameters.controller_files}
+    publishing, moving = [], []
+    for controller in controllers:
+        if controller.location.path not in given_files:
+            continue
+        if controller.is_broadcaster:
+            publishing.append(controller)
+        else:
+            moving.append(controller)
+    for kind in (publishing, moving):
+        if kind and spawned.isdisjoint(controller.name for controller in kind):
+            text = f"no spawner starts {_names_of(kind, 'or')}"
+            yield Mismatch(CONTROLLER_STARTED, text, kind[0].location)
+
+
+def started_controllers(workspace: Workspace) -> set[str | None] | None:
+    """Return the controllers that spawners start.
+
+    The result is None where something else may start some, or the name of one may be misspelt.
+    """
+    spawned = _spawned(workspace)
+    if spawned is None or not workspace.robots.has_controller_manager:
+        return None
+    if spawned - {controller.name for controller in defined_controllers(workspace)}:
+        return None
+    return spawned
+
+
+def _spawned(workspace: Workspace) -> set[str | None] | None:
+    """Return the controllers that spawners start.
+
+    The result is None without a spawner, or where something else may start some.
+    """
+    texts = (*workspace.texts.launch_texts, *workspace.texts.python_texts)
+    if workspace.launches.unknown_nodes or any(map(_OTHER_STARTS.search, texts)):
+        return None
+    spawned: set[str | None] = set()
+    has_spawner = False
+    for _, node in workspace.launches.nodes:
+        if _is_spawner(node):
+            has_spawner = True
+            spawned |= {controller.node_name for controller in controllers_of(node) or ()}
+        elif node.package == MANAGER and not _is_manager(node):
+            return None
+    return spawned if has_spawner else None

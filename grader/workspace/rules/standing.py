@@ -1,0 +1,31 @@
+"""Robots that lean, or that their wheels do not drive straight ahead.
+
+`grader inspect` alone warns of them: no rubric asks for them by `names_agree`.
+"""
+
+from grader.base.problems import Problem
+from grader.base.source import Location
+from grader.ros.urdf.driving import DescribedDriving
+from grader.workspace.rules.rule_table import ROBOT_STANDS
+
+
+def standing_problem(path: str, driving: DescribedDriving, *, with_course: bool) -> Problem | None:
+    """Return what is wrong with how a robot stands and drives; None if nothing is known to be.
+
+    Args:
+        path: The file of the robot.
+        driving: How it stands and drives.
+        with_course: Whether it counts that it does not drive straight ahead.
+    """
+    faults, texts = list(driving.rest_faults), list[str]()
+    if faults:
+        texts.append(f"on level ground, {'; '.join(fault.text for fault in faults)}")
+    if with_course and driving.course_faults:
+        course = "; ".join(fault.text for fault in driving.course_faults)
+        texts.append(f"when its wheels turn forward, {course}")
+        faults += driving.course_faults
+    if not texts:
+        return None
+    places = [fault.at.resolve() for fault in faults if fault.at is not None]
+    at = next(iter(places), Location(path, 1, 1))
+    return ROBOT_STANDS.problem("; ".join(texts), at, is_certain=False)

@@ -1,0 +1,75 @@
+"""Programs that read keys or lines, which a launch file starts without a terminal.
+
+The standard input of what `ros2 launch` starts is a pipe that nothing writes to.
+"""
+
+import re
+from collections.abc import Iterator
+
+from grader.base.source import Location
+from grader.ros.known.package_rows import program_row
+from grader.ros.launch.launch_model import StartedNode
+from grader.workspace.model.code_text import code_alone
+from grader.workspace.model.own_code import CPP_ENDINGS
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.rule_table import PROGRAM_TERMINAL
+
+# What reads or changes the settings of a terminal, and that it is the one of the standard input.
+_KEYS = re.compile(r"\b(?:tcgetattr|setraw|setcbreak)\s*+\(")
+_STANDARD = re.compile(r"\bstdin\b|\bSTDIN_FILENO\b|\btcgetattr\s*+\(\s*+0\b|\bkfd\s*+[=({]\s*+0\b")
+# What reads keys or lines in Python without naming the standard input.
+_ALSO = re.compile(r"\bcurses\.(?:wrapper|initscr)\b|(?<![\w.])input\s*+\(")
+# Code that looks whether there is a terminal or an option, opens another one, or goes on without.
+_OTHERWISE = re.compile(
+    r"\bisatty\b|\bopenpty\b|\btermios\.error\b|\bEOFError\b|\bargv\b|\bargparse\b|[tT]hread"
+    r"|\b(?:def|import|for|as)\s++input\b"
+)
+_IF_MAIN = re.compile(r"^if\s++__name__\b", re.MULTILINE)  # what follows is run by no entry point
+_OTHER_TERMINAL = re.compile(r"/dev/tty\b|['\"]launch-prefix['\"]")
+_PORT = "/dev/tty"  # also of another device
+
+
+def terminal_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the programs that read keys or lines, and that are started without a terminal.
+
+    Of own programs the file of their only node is read. Nothing is said of one that is started by
+    another program, such as xterm, or that may do otherwise: for an option, or in a thread.
+    """
+    if any(map(_OTHER_TERMINAL.search, workspace.texts.launch_texts)):
+        return
+    said = set[Location]()
+    for _, node in workspace.launches.launched:
+        if node.when is False or node.has_prefix or node.location in said:
+            continue
+        yield Compared("wiring")
+        if program_row(node.package, node.executable).reads_keys or _reads_keys(workspace, node):
+            said.add(node.location)
+            message = (
+                f"{node.executable} reads keys or lines, and ros2 launch gives it no terminal: "
+                "start it with the prefix xterm -e, or with ros2 run in another terminal"
+            )
+            yield warning(PROGRAM_TERMINAL, message, node.location)
+
+
+def _reads_keys(workspace: Workspace, node: StartedNode) -> bool:
+    """Return whether the file of an own node reads keys or lines."""
+    path, text = _file_of(workspace, node)
+    if _PORT in text or (not _KEYS.search(text) and not _ALSO.search(text)):
+        return False
+    code = _IF_MAIN.split(code_alone(text, path), maxsplit=1)[0]
+    if _OTHERWISE.search(code):
+        return False
+    if path.endswith(".py") and _ALSO.search(code):
+        return True
+    return _KEYS.search(code) is not None and _STANDARD.search(code) is not None
+
+
+def _file_of(workspace: Workspace, node: StartedNode) -> tuple[str, str]:
+    """Return the path and the text of the file of an own node; empty for another one."""
+    facts, package = workspace.code.own_node(node), workspace.package_of(node)
+    if facts is None or package is None:
+        return "", ""
+    path = facts.location.path
+    sources = workspace.texts.sources_of(package, (".py", *CPP_ENDINGS))
+    return path, next((source.text for source in sources if source.path == path), "")

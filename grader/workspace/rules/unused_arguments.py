@@ -1,0 +1,90 @@
+"""Arguments that launch files and xacro declare, and that nothing uses."""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+
+from grader.base.source import Source
+from grader.base.text import enumerated, quoted
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.arguments import includes_others
+from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.rule_table import LAUNCH_ARGUMENT_USED, XACRO_ARGUMENT_USED
+
+_DECLARED = re.compile(r"\bDeclareLaunchArgument\(\s*+(?:name\s*+=\s*+)?[\"'](\w++)[\"']")
+_TEXT = re.compile(r"[\"'](\w++)[\"']")
+# With one of these, others may use an argument, or text that is not read.
+_OTHER_USERS = (
+    "IncludeLaunchDescription",
+    "allow_substs",
+    "launch_configurations",
+    "import_module",
+)
+_COMPUTED = re.compile(r"LaunchConfiguration\((?!\s*+(?:\w++\s*+=\s*+)?[\"']\w*+[\"']\s*+[,)])")
+_IMPORTED = re.compile(r"^[ \t]*+(?:from|import)\s++(\w++)", re.MULTILINE)
+_XACRO_DECLARED = re.compile(r"<xacro:arg\s++name\s*+=\s*+[\"']([\w-]++)[\"']")
+_XACRO_USED = re.compile(r"\$\(arg\s++([\w-]++)|\barg\(\s*+[\"'](\w++)")
+
+
+def unused_argument_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the arguments that are declared, and that nothing in the files uses.
+
+    A launch file that includes another one shares its arguments with it.
+    """
+    yield from _of_launch_files(workspace)
+    yield from _of_xacro(workspace)
+
+
+def _of_launch_files(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the arguments of launch files in Python whose names nothing else in the file has."""
+    for package in workspace.packages:
+        for source in workspace.texts.launch_sources(package):
+            if _may_be_used_otherwise(workspace, source):
+                continue
+            yield Compared("words")
+            counts = Counter(_TEXT.findall(source.text))
+            declared = [*_DECLARED.finditer(source.text)]
+            unused = [match for match in declared if counts[match[1]] == 1]
+            if unused:
+                names = enumerated([quoted(match[1]) for match in unused])
+                noun = "argument" if len(unused) == 1 else "arguments"
+                message = f"nothing in the launch file uses the {noun} {names}"
+                yield warning(LAUNCH_ARGUMENT_USED, message, source.at(unused[0].start(1)))
+
+
+def _may_be_used_otherwise(workspace: Workspace, source: Source) -> bool:
+    """Return whether the arguments of a launch file may be used otherwise than by their names."""
+    text, name = source.text, source.path.rpartition("/")[2]
+    if any(word in text for word in _OTHER_USERS) or _COMPUTED.search(text):
+        return True
+    modules = {package.name for package in workspace.packages}
+    if not modules.isdisjoint(_IMPORTED.findall(text)):
+        return True
+    return any(name in other and other != text for other in workspace.texts.launch_texts)
+
+
+def _used_arguments(sources: Iterable[Source]) -> set[str]:
+    """Return the arguments of xacro that texts use."""
+    used = set[str]()
+    for source in sources:
+        for match in _XACRO_USED.finditer(source.text):
+            used.add(match[1] or match[2])
+    return used
+
+
+def _of_xacro(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the arguments of xacro that no file of xacro in the workspace uses.
+
+    A file of another package that one includes may use any.
+    """
+    sources = [*workspace.robots.xacro_sources]
+    if any(includes_others(workspace, source) for source in sources):
+        return
+    used = _used_arguments(sources)
+    for source in sources:
+        unused = [match for match in _XACRO_DECLARED.finditer(source.text) if match[1] not in used]
+        if unused:
+            names = enumerated([quoted(match[1]) for match in unused])
+            noun = "argument" if len(unused) == 1 else "arguments"
+            message = f"nothing uses the {noun} {names} of xacro"
+            yield warning(XACRO_ARGUMENT_USED, message, source.at(unused[0].start(1)))
