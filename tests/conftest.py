@@ -67,6 +67,17 @@ _DECIDING = (  # what covers the code that decides a mark: see [tool.coverage] i
     *("cli/test_plugin_checks.py", "cli/test_review_pages.py", "cli/test_review_server.py"),
     *("fuzz/test_harnesses.py", "test_api.py", "test_docstring_examples.py", "test_registry.py"),
 )
+_LONGEST = (  # minutes of one worker in .ci/run, or nearly
+    *("browser/test_attacks.py", "browser/test_site.py", "classroom/test_batch_resume.py"),
+    *(
+        "classroom/workers/test_pool.py",
+        "differential/test_differential.py",
+        "faults/test_faults.py",
+    ),
+    *("grading/test_slip_hints.py", "hints/test_laws.py", "hints/test_mutants.py"),
+    *("oracles/test_mujoco.py", "report/test_mistakes.py", "test_page_commands.py"),
+    "urdf/test_reader.py",
+)
 _FEW = 2  # cases of a test that README's command runs
 
 
@@ -135,12 +146,17 @@ def _of_each_kind(cases: list[pytest.Item]) -> list[pytest.Item]:
 
 
 def _reorder(items: list[pytest.Item], order: str) -> None:
-    """Put the files into another order; the tests of a file share fixtures, and stay together."""
+    """Put the files into another order; the tests of a file share fixtures, and stay together.
+
+    In a random order the longest files come first, so that no worker waits for the one that runs the last of them.
+    """
+    longest = [Path(__file__).parent / name for name in _LONGEST]
     files = [*dict.fromkeys(item.path for item in items)]
     if order == "reversed":
         files.reverse()
     elif order:
         Random(order).shuffle(files)
+        files.sort(key=lambda path: path not in longest)
     places = {path: place for place, path in enumerate(files)}
     items.sort(key=lambda item: places[item.path])
 
