@@ -69,14 +69,10 @@ _DECIDING = (  # what covers the code that decides a mark: see [tool.coverage] i
 )
 _LONGEST = (  # minutes of one worker in .ci/run, or nearly
     *("browser/test_attacks.py", "browser/test_site.py", "classroom/test_batch_resume.py"),
-    *(
-        "classroom/workers/test_pool.py",
-        "differential/test_differential.py",
-        "faults/test_faults.py",
-    ),
-    *("grading/test_slip_hints.py", "hints/test_laws.py", "hints/test_mutants.py"),
-    *("oracles/test_mujoco.py", "report/test_mistakes.py", "test_page_commands.py"),
-    "urdf/test_reader.py",
+    *("classroom/workers/test_pool.py", "cli/test_rubric_test.py", "faults/test_faults.py"),
+    *("differential/test_differential.py", "grading/test_slip_hints.py", "hints/test_laws.py"),
+    *("hints/test_mutants.py", "oracles/test_mujoco.py", "report/test_mistakes.py"),
+    *("test_page_commands.py", "urdf/test_reader.py", "walks/test_walks.py"),
 )
 _FEW = 2  # cases of a test that README's command runs
 
