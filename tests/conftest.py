@@ -11,7 +11,8 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from hypothesis import settings
+from hypothesis import find, settings
+from hypothesis.strategies import none
 
 from tests.edits_rubric import copy_with_edits
 
@@ -65,6 +66,13 @@ _DECIDING = (  # what covers the code that decides a mark: see [tool.coverage] i
     *("interfaces", "parameters", "workspace"),
     *("cli/test_plugin_checks.py", "cli/test_review_pages.py", "cli/test_review_server.py"),
     *("fuzz/test_harnesses.py", "test_api.py", "test_docstring_examples.py", "test_registry.py"),
+)
+_LONGEST = (  # minutes of one worker in .ci/run, or nearly
+    *("browser/test_attacks.py", "browser/test_site.py", "classroom/test_batch_resume.py"),
+    *("classroom/workers/test_pool.py", "cli/test_rubric_test.py", "faults/test_faults.py"),
+    *("differential/test_differential.py", "grading/test_slip_hints.py", "hints/test_laws.py"),
+    *("hints/test_mutants.py", "oracles/test_mujoco.py", "report/test_mistakes.py"),
+    *("test_page_commands.py", "urdf/test_reader.py", "walks/test_walks.py"),
 )
 _FEW = 2  # cases of a test that README's command runs
 
@@ -134,18 +142,29 @@ def _of_each_kind(cases: list[pytest.Item]) -> list[pytest.Item]:
 
 
 def _reorder(items: list[pytest.Item], order: str) -> None:
-    """Put the files into another order; the tests of a file share fixtures, and stay together."""
+    """Put the files into another order; the tests of a file share fixtures, and stay together.
+
+    In a random order the longest files come first, so that no worker waits for the one that runs the last of them.
+    """
+    longest = [Path(__file__).parent / name for name in _LONGEST]
     files = [*dict.fromkeys(item.path for item in items)]
     if order == "reversed":
         files.reverse()
     elif order:
         Random(order).shuffle(files)
+        files.sort(key=lambda path: path not in longest)
     places = {path: place for place, path in enumerate(files)}
     items.sort(key=lambda item: places[item.path])
 
 
 def pytest_collection_finish() -> None:
-    """Exclude the objects of ten thousand tests from the garbage collector, which would scan them again and again."""
+    """Exclude the objects of ten thousand tests from the garbage collector, which would scan them again and again.
+
+    Hypothesis runs an example before: it makes a generator of random numbers for the thread, and warns of one that
+    nothing refers to. From Python 3.14 on, the collector tracks each dictionary, so that the one of the thread that refers
+    to the generator is excluded with the others, and not found.
+    """
+    find(none(), lambda _: True)
     gc.collect()
     gc.freeze()
 

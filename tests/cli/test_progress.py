@@ -16,6 +16,7 @@ import pytest
 from grader.app.cli import streams
 from grader.workers.queue import Progress as State
 from tests.classroom.gradebooks import ENVIRONMENT, make_class
+from tests.cli.terminals import needs_terminal
 from tests.samples import ROOT
 
 pytestmark = pytest.mark.slow
@@ -47,6 +48,7 @@ def on_terminal(*arguments: object) -> str:
 
 
 @pytest.mark.exhaustive
+@needs_terminal
 def test_the_total_is_known_from_the_start(tmp_path: Path) -> None:
     """It is the same for grading and reports, and no total is ever unknown."""
     make_class(tmp_path)

@@ -26,6 +26,7 @@ from grader.base.processor_time import CAN_LIMIT
 from grader.report.screen import Screen
 from grader.report.writing import Warn
 from tests.classroom.class_runs import shell_code, started
+from tests.cli.terminals import needs_terminal
 from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment, run
 
 REFERENCE = ROOT / "submissions/lab6/reference"
@@ -305,6 +306,7 @@ def test_verbose_shows_all_on_a_terminal(robot: Path, watch: Watch) -> None:
     assert not any("more rows" in row for row in (*whole, *fitting))
 
 
+@needs_terminal
 @pytest.mark.parametrize(("kind", "is_terminal"), [("xterm", True), ("dumb", False)])
 def test_a_terminal_without_commands_is_written_as_a_pipe(
     kind: str, is_terminal: bool, monkeypatch: pytest.MonkeyPatch

@@ -3,6 +3,7 @@
 import asyncio
 import logging
 import sys
+import tomllib
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 from pathlib import Path
@@ -11,9 +12,12 @@ from lsprotocol import types as lsp
 from pytest_lsp import LanguageClient, client_capabilities
 from pytest_lsp.client import make_test_lsp_client
 
-from tests.command_line import HANG_TIMEOUT
+from tests.command_line import HANG_TIMEOUT, ROOT
 
-COMMAND = (sys.executable, "-W", "error", "-m", "grader", "lsp")
+_SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["pytest"]
+_FILTERS = [f"-W{line}" for line in _SETTINGS["ini_options"]["filterwarnings"]]
+STRICT_PYTHON = (sys.executable, *_FILTERS)  # warnings are errors, as in pytest
+COMMAND = (*STRICT_PYTHON, "-m", "grader", "lsp")
 
 
 class Editor:

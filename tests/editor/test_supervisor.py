@@ -9,7 +9,7 @@ import pytest
 from lsprotocol import types as lsp
 
 from tests.command_line import HANG_TIMEOUT, ROOT
-from tests.editor.client import Editor, editor
+from tests.editor.client import STRICT_PYTHON, Editor, editor
 
 _URDF = "my_robot/urdf/my_robot.urdf"
 _HANGS = "<!-- hangs -->"
@@ -42,7 +42,7 @@ def lab6(tmp_path: Path) -> Path:
 
 
 def _command(seconds: float) -> tuple[str, ...]:
-    return (sys.executable, "-W", "error", "-c", _SLOW.replace("{seconds}", str(seconds)))
+    return (*STRICT_PYTHON, "-c", _SLOW.replace("{seconds}", str(seconds)))
 
 
 async def _hover(one: Editor, path: str, text: str) -> lsp.Hover | None:
@@ -124,7 +124,7 @@ def test_survives_a_reader_that_always_ends(lab6: Path) -> None:
     )
 
     async def act() -> None:
-        command = (sys.executable, "-W", "error", "-c", ends)
+        command = (*STRICT_PYTHON, "-c", ends)
         async with editor(lab6, looks=False, command=command) as one:
             for _ in range(2):
                 assert await _hover(one, _URDF, "lidar") is None

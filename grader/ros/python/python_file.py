@@ -9,7 +9,7 @@ from typing import NamedTuple
 from grader.base.source import Edit, Edits, Source
 from grader.ros.python.bindings import names_bound
 from grader.ros.python.library import USUAL_NAMES
-from grader.ros.python.parse import Code, SyntaxFault, parse
+from grader.ros.python.parse import Code, SyntaxFault, parse, parse_expression
 from grader.ros.python.walking import walk
 
 _STRING = re.compile(
@@ -212,11 +212,9 @@ class PythonFile:
         return f"import {attribute}{self.newline}"
 
 
-def _expression(code: str) -> ast.Expression | None:
-    try:
-        return ast.parse(code.strip(), mode="eval")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None
+def _expression(code: str) -> ast.expr | None:
+    parsed = parse_expression(code.strip())
+    return parsed if isinstance(parsed, ast.expr) else None
 
 
 def _called(call: ast.Call) -> str:
