@@ -85,11 +85,12 @@ _Progress = Callable[[int, int, Sequence[KindScore]], None]
 
 
 class MutantOutcome(NamedTuple):
-    """What the criteria made of a mutant: those that fail, and the faulty ones."""
+    """What the criteria made of a mutant: those that fail, and those that say nothing of it."""
 
     mutant: Mutant
-    fate: str  # caught, same, survived or faulty
+    fate: str  # caught, same, survived, faulty or over budget
     failed: tuple[str, ...] = ()
+    # With their messages: those that are faulty, or what is left open for lack of work.
     faults: Mapping[str, str] = {}
 
 
@@ -271,9 +272,10 @@ class Trial:
         Of the robot only the URDF is read again.
         """
         is_of_robot = self._is_of_robot(mutant)
-        subjects = {name: result.criterion.check.subject for name, result in self.expected.items()}
         names = [
-            name for name, subject in subjects.items() if not is_of_robot or subject != "package"
+            name
+            for name, result in self.expected.items()
+            if not is_of_robot or result.criterion.check.subject != "package"
         ]
         return [*decide(self.rubric, submission, names)]
 
@@ -290,24 +292,22 @@ class Trial:
         if submission is None:
             return MutantOutcome(mutant, "caught")
         results = self.results(mutant, submission)
-        faults = {
-            result.criterion.id: result.outcome.message
-            for result in results
-            if result.outcome.status == "errored"
-        }
-        is_of_robot = self._is_of_robot(mutant)
+        lost = [result for result in results if self.is_lost(result)]
+        faults = _messages(results, "errored")
+        undecided = _messages(lost, "pending")
         if faults:
             fate = "faulty"
-        elif any(map(self.is_lost, results)):
+        elif submission.is_over_budget and len(undecided) == len(lost) > 0:
+            fate, faults = "over budget", undecided
+        elif lost:
             fate = "caught"
-        elif is_of_robot and is_same_robot(self.reference.urdf, submission.urdf, self.kept):
+        elif self._is_of_robot(mutant) and is_same_robot(
+            self.reference.urdf, submission.urdf, self.kept
+        ):
             fate = "same"
         else:
             fate = "survived"
-        failed = tuple(
-            result.criterion.id for result in results if result.outcome.status == "failed"
-        )
-        return MutantOutcome(mutant, fate, failed, faults)
+        return MutantOutcome(mutant, fate, tuple(_messages(results, "failed")), faults)
 
     def equivalents(self) -> Iterator[Loss]:
         """Yield what each rewriting of the reference loses: most lose nothing."""
@@ -370,6 +370,15 @@ class Trial:
             for criterion in asked
             if family not in criterion.check.about.breaks_under(criterion.arguments)
         ]
+
+
+def _messages(results: Iterable[Result], status: str) -> dict[str, str]:
+    """Return the messages of the criteria that have a status."""
+    return {
+        result.criterion.id: result.outcome.message
+        for result in results
+        if result.outcome.status == status
+    }
 
 
 def _is_of_writing(criterion: Criterion, family: str) -> bool:
@@ -457,6 +466,8 @@ class RubricTest(NamedTuple):
     unexamined: tuple[str, ...]  # files that no criterion looks at
     files: int  # how many were tried
     faults: tuple[Loss, ...]  # mutants on which a check is faulty
+    # mutants that lose nothing but what takes more work than one submission may use
+    over_budget: tuple[Loss, ...]
     equivalents: tuple[str, ...]  # the families that were tried
     losses: tuple[Loss, ...]  # equivalents that lose points
     samples: SampleResults | None = None  # None where no folder was given
@@ -562,7 +573,7 @@ def _counted(
     fates = Counter(outcome.fate for outcome in graded)
     survivors: list[_Survivor] = []
     ignored: list[_Survivor] = []
-    faults: list[Loss] = []
+    unjudged: dict[str, list[Loss]] = {"faulty": [], "over budget": []}
     failed: set[str] = set()
     scored: list[tuple[str, str]] = []
     for outcome in graded:
@@ -577,8 +588,10 @@ def _counted(
                 ignored.append(survivor)
             else:
                 survivors.append(survivor)
-        elif outcome.fate == "faulty":
-            faults.append(Loss(mutant.id, outcome.faults, _mutant_diff(trial, mutant)))
+        elif outcome.fate in unjudged:
+            unjudged[outcome.fate].append(
+                Loss(mutant.id, outcome.faults, _mutant_diff(trial, mutant))
+            )
     idle = [criterion.id for criterion in trial.tested if criterion.id not in failed]
     is_interrupted = rest is None
     equivalents, unexamined, files = rest or _Rest([], [], 0)
@@ -596,7 +609,8 @@ def _counted(
         idle=() if is_interrupted else tuple(idle),
         unexamined=tuple(unexamined),
         files=files,
-        faults=tuple(faults),
+        faults=tuple(unjudged["faulty"]),
+        over_budget=tuple(unjudged["over budget"]),
         equivalents=tuple(names),
         losses=tuple(losses),
         samples=samples,

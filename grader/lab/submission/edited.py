@@ -55,6 +55,7 @@ def with_urdf(submission: Submission, files: _Files) -> Submission:
 
     For edits of the URDF and of xacro that it includes.
     """
+    submission = submission.renewed()
     urdf = submission.urdf
     assert isinstance(urdf, Read)
     is_renamed = files.get(urdf.path, b"") is None
