@@ -105,11 +105,11 @@ class Trial:
         self.rubric = rubric
         self.reference = replace(rubric.solution.submission, memory=self._memory)
         self.report = grade(rubric, self.reference)
-        counting = (result for result in self.report.results if not result.is_adjusted)
-        automatic = (
-            result for result in counting if result.criterion.check.function not in MANUAL_CHECKS
-        )
-        self.expected: Mapping[str, Result] = {result.criterion.id: result for result in automatic}
+        self.expected: Mapping[str, Result] = {
+            result.criterion.id: result
+            for result in self.report.results
+            if not result.is_adjusted and result.criterion.check.function not in MANUAL_CHECKS
+        }
 
     @cached_property
     def tested(self) -> list[Criterion]:
@@ -194,8 +194,7 @@ class Trial:
 
     def _mutants_of_packages(self, package: Package) -> Iterator[Mutant]:
         """Yield the mutants of the packages, the main one first, that a criterion may look at."""
-        urdf = self.reference.urdf
-        robot = urdf.reading.robot if isinstance(urdf, Read) else None
+        robot = self.reference.robot
         links = [link.name for link in robot.links] if robot is not None else []
         packages = [
             lab_package
@@ -322,16 +321,14 @@ class Trial:
 
     def _file_equivalent(self, family: str, texts: Mapping[str, str | None]) -> Loss:
         """Return what other texts of files lose; None for a file that is not there any more."""
-        criteria = [criterion for criterion in self.tested if not _is_of_writing(criterion, family)]
+        names = [one.id for one in self.tested if not _is_of_writing(one, family)]
         files: dict[str, bytes | None] = {}
         diffs = []
         for path, text in texts.items():
             files[path] = None if text is None else text.encode("utf-8", "surrogateescape")
             diffs.append(_text_diff(path, self.text(path), text or ""))
         changed = with_files(self.reference, files)
-        return Loss(
-            family, self._lost(changed, [criterion.id for criterion in criteria]), "\n".join(diffs)
-        )
+        return Loss(family, self._lost(changed, names), "\n".join(diffs))
 
     def _robot_equivalents(self, urdf: Read) -> Iterator[Loss]:
         root = urdf.reading.root
@@ -364,11 +361,11 @@ class Trial:
         For a URDF on its own, those that need no package.
         """
         others = ("package", "submission") if submission.is_single else ("package",)
-        asked = (criterion for criterion in self.tested if criterion.check.subject not in others)
         return [
             criterion.id
-            for criterion in asked
-            if family not in criterion.check.about.breaks_under(criterion.arguments)
+            for criterion in self.tested
+            if criterion.check.subject not in others
+            and family not in criterion.check.about.breaks_under(criterion.arguments)
         ]
 
 
@@ -595,8 +592,6 @@ def _counted(
     idle = [criterion.id for criterion in trial.tested if criterion.id not in failed]
     is_interrupted = rest is None
     equivalents, unexamined, files = rest or _Rest([], [], 0)
-    names = [loss.name for loss in equivalents]
-    losses = [loss for loss in equivalents if loss.criteria]
     return RubricTest(
         reference=trial.report,
         total=len(every),
@@ -605,30 +600,26 @@ def _counted(
         same=fates["same"],
         survivors=tuple(survivors),
         ignored=tuple(ignored),
-        unused=_unused_patterns(trial.rubric, every),
+        unused=tuple(_unused_patterns(trial.rubric, every)),
         idle=() if is_interrupted else tuple(idle),
         unexamined=tuple(unexamined),
         files=files,
         faults=tuple(unjudged["faulty"]),
         over_budget=tuple(unjudged["over budget"]),
-        equivalents=tuple(names),
-        losses=tuple(losses),
+        equivalents=tuple(loss.name for loss in equivalents),
+        losses=tuple(loss for loss in equivalents if loss.criteria),
         samples=samples,
         kinds=tuple(scores_by_kind(scored)),
         is_interrupted=is_interrupted,
     )
 
 
-def _unused_patterns(rubric: Rubric, mutants: Sequence[Mutant]) -> tuple[str, ...]:
-    """Return the patterns of ignored mutants that no mutant matches."""
-    unused: list[str] = []
+def _unused_patterns(rubric: Rubric, mutants: Sequence[Mutant]) -> Iterator[str]:
+    """Yield the patterns of ignored mutants that no mutant matches."""
     for row in rubric.ignored:
-        unused += [
-            pattern
-            for pattern in row.mutants
-            if not any(_matches(mutant, pattern) for mutant in mutants)
-        ]
-    return tuple(unused)
+        for pattern in row.mutants:
+            if not any(_matches(mutant, pattern) for mutant in mutants):
+                yield pattern
 
 
 def _survivor(trial: Trial, mutant: Mutant) -> _Survivor:

@@ -252,11 +252,9 @@ class Package:
     @cached_property
     def installation(self) -> "Installation | None":
         """Return what its setup.py or CMakeLists.txt installs; None without either."""
-        return self.own_memory.recall(
-            "installation", None, self.budget, lambda _: self._read_installation()
-        )
+        return self.own_memory.recall("installation", None, self.budget, self._read_installation)
 
-    def _read_installation(self) -> "Installation | None":
+    def _read_installation(self, _: object) -> "Installation | None":
         name = CMAKE if self.is_cmake else SETUP
         file = self.tree.files.get(name)
         if file is None:

@@ -80,9 +80,13 @@ class Budget:
 
     def take_of_whole(self, parts: int) -> bool:
         """Charge parts to the budget of the workspace alone; return whether they were left."""
-        if self.whole is not None:
-            self.whole.left -= parts
+        self._take(0, parts)
         return not self.is_spent
+
+    def _take(self, parts: int, of_whole: int) -> None:
+        self.left -= parts
+        if self.whole is not None:
+            self.whole.left -= of_whole
 
     def mark(self) -> tuple[int, int]:
         """Return the parts that are left, of this budget and of that of all files.
@@ -109,9 +113,7 @@ class Budget:
         cost_here, of_whole = cost
         if cost_here > self.left or (self.whole is not None and of_whole > self.whole.left):
             return False
-        self.left -= cost_here
-        if self.whole is not None:
-            self.whole.left -= of_whole
+        self._take(cost_here, of_whole)
         self.set_apart(cost)
         return True
 
