@@ -236,7 +236,7 @@ class Trial:
 
     @cached_property
     def _names(self) -> list[tuple[Fact, Edit]]:
-        return [*compared_names(self.reference, self._families)]
+        return [*compared_names(self.reference.renewed(), self._families)]
 
     def _is_looked_at(self, mutant: Mutant) -> bool:
         """Return whether a criterion may look at a mutant of a package.
@@ -313,10 +313,10 @@ class Trial:
         urdf = self.reference.urdf
         if isinstance(urdf, Read) and urdf.loaded.verdict == "clean":
             yield from self._robot_equivalents(urdf)
-        names = set(_names_in(self.rubric))
-        rewritten = package_equivalents(self.reference, names, self.robot_files)
-        of_nodes = node_equivalents(self.reference, names)
-        for family, texts in chain(file_equivalents(self.reference), rewritten, of_nodes):
+        names, reference = set(_names_in(self.rubric)), self.reference.renewed()
+        rewritten = package_equivalents(reference, names, self.robot_files)
+        of_nodes = node_equivalents(reference, names)
+        for family, texts in chain(file_equivalents(reference), rewritten, of_nodes):
             yield self._file_equivalent(family, texts)
 
     def _file_equivalent(self, family: str, texts: Mapping[str, str | None]) -> Loss:
