@@ -6,7 +6,8 @@ import re
 import signal
 import sys
 from collections import Counter, defaultdict
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from random import Random
 
@@ -45,6 +46,8 @@ _NAMES = (
     "PYTHONDONTWRITEBYTECODE",
     "PYTHONHASHSEED",
     "PYTHONOPTIMIZE",
+    "PYTHONPATH",
+    "PYTHONSAFEPATH",
     "PYTHONWARNINGS",
     "TTY_COMPATIBLE",
     "TTY_INTERACTIVE",
@@ -92,16 +95,32 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     return True if marked is not None else None
 
 
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_call() -> Generator[None]:
-    """Take back what the code under test does to the variables of the process, as starting workers does."""
+@contextmanager
+def _kept_variables() -> Iterator[None]:
     before = dict(os.environ)
     try:
-        return (yield)
+        yield
     finally:
         if os.environ != before:
             os.environ.clear()
             os.environ.update(before)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol() -> Generator[None, bool, bool]:
+    """Take back what the code under test does to the variables of the process, as starting workers does.
+
+    Fixtures of a test may start workers as well: then Python no longer imports from the current folder in any later test.
+    """
+    with _kept_variables():
+        return (yield)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_fixture_setup(fixturedef: pytest.FixtureDef[object]) -> Generator[None, object, object]:
+    """Do the same for a fixture that several tests share."""
+    with _kept_variables() if fixturedef.scope != "function" else nullcontext():
+        return (yield)
 
 
 @pytest.hookimpl(tryfirst=True)  # before tests are selected by their marks

@@ -40,6 +40,9 @@ class _Work(Protocol):
     def repeat(self, cost: _Cost) -> bool:
         """Charge again what was charged for the same work; return whether it was left."""
 
+    def set_apart(self, cost: _Cost) -> None:
+        """Leave work that was charged out of the marks."""
+
 
 class Answers(Generic[_Asked]):
     """What something was asked, and its answers.
@@ -111,10 +114,11 @@ class Memory:
         answers, before = Answers(asked), work.mark()
         result = make(answers)
         answers.close()
+        after = work.mark()
+        cost = (before[0] - after[0], before[1] - after[1])
+        work.set_apart(cost)
         # What other files of a submission leave too little work for is another result elsewhere.
         if not work.is_spent:
-            after = work.mark()
-            cost = (before[0] - after[0], before[1] - after[1])
             self._keep(key, _Kept(answers, result, cost))
         return result
 

@@ -4,6 +4,7 @@ They are for the score of each, to draw a sample over all of them, and for why s
 """
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import chain, zip_longest
 from random import Random
@@ -84,13 +85,12 @@ def scores_by_kind(outcomes: Iterable[tuple[str, str]]) -> list[KindScore]:
     `outcomes` are the families of mutants with what became of them: caught, survived, or what
     counts for neither.
     """
-    caught: dict[str, int] = {}
-    counts: dict[str, int] = {}
+    caught, counts = Counter[str](), Counter[str]()
     for family, fate in outcomes:
         if fate in ("caught", "survived"):
             kind = kind_of(family)
-            counts[kind] = counts.get(kind, 0) + 1
-            caught[kind] = caught.get(kind, 0) + (fate == "caught")
+            counts[kind] += 1
+            caught[kind] += fate == "caught"
     order = [*_KINDS, _OTHER]
     return [KindScore(kind, caught[kind], counts[kind]) for kind in order if kind in counts]
 

@@ -85,11 +85,12 @@ _Progress = Callable[[int, int, Sequence[KindScore]], None]
 
 
 class MutantOutcome(NamedTuple):
-    """What the criteria made of a mutant: those that fail, and the faulty ones."""
+    """What the criteria made of a mutant: those that fail, and those that say nothing of it."""
 
     mutant: Mutant
-    fate: str  # caught, same, survived or faulty
+    fate: str  # caught, same, survived, faulty or over budget
     failed: tuple[str, ...] = ()
+    # With their messages: those that are faulty, or what is left open for lack of work.
     faults: Mapping[str, str] = {}
 
 
@@ -104,11 +105,11 @@ class Trial:
         self.rubric = rubric
         self.reference = replace(rubric.solution.submission, memory=self._memory)
         self.report = grade(rubric, self.reference)
-        counting = (result for result in self.report.results if not result.is_adjusted)
-        automatic = (
-            result for result in counting if result.criterion.check.function not in MANUAL_CHECKS
-        )
-        self.expected: Mapping[str, Result] = {result.criterion.id: result for result in automatic}
+        self.expected: Mapping[str, Result] = {
+            result.criterion.id: result
+            for result in self.report.results
+            if not result.is_adjusted and result.criterion.check.function not in MANUAL_CHECKS
+        }
 
     @cached_property
     def tested(self) -> list[Criterion]:
@@ -193,8 +194,7 @@ class Trial:
 
     def _mutants_of_packages(self, package: Package) -> Iterator[Mutant]:
         """Yield the mutants of the packages, the main one first, that a criterion may look at."""
-        urdf = self.reference.urdf
-        robot = urdf.reading.robot if isinstance(urdf, Read) else None
+        robot = self.reference.robot
         links = [link.name for link in robot.links] if robot is not None else []
         packages = [
             lab_package
@@ -236,7 +236,7 @@ class Trial:
 
     @cached_property
     def _names(self) -> list[tuple[Fact, Edit]]:
-        return [*compared_names(self.reference, self._families)]
+        return [*compared_names(self.reference.renewed(), self._families)]
 
     def _is_looked_at(self, mutant: Mutant) -> bool:
         """Return whether a criterion may look at a mutant of a package.
@@ -271,9 +271,10 @@ class Trial:
         Of the robot only the URDF is read again.
         """
         is_of_robot = self._is_of_robot(mutant)
-        subjects = {name: result.criterion.check.subject for name, result in self.expected.items()}
         names = [
-            name for name, subject in subjects.items() if not is_of_robot or subject != "package"
+            name
+            for name, result in self.expected.items()
+            if not is_of_robot or result.criterion.check.subject != "package"
         ]
         return [*decide(self.rubric, submission, names)]
 
@@ -290,48 +291,44 @@ class Trial:
         if submission is None:
             return MutantOutcome(mutant, "caught")
         results = self.results(mutant, submission)
-        faults = {
-            result.criterion.id: result.outcome.message
-            for result in results
-            if result.outcome.status == "errored"
-        }
-        is_of_robot = self._is_of_robot(mutant)
+        lost = [result for result in results if self.is_lost(result)]
+        faults = _messages(results, "errored")
+        undecided = _messages(lost, "pending")
         if faults:
             fate = "faulty"
-        elif any(map(self.is_lost, results)):
+        elif submission.is_over_budget and len(undecided) == len(lost) > 0:
+            fate, faults = "over budget", undecided
+        elif lost:
             fate = "caught"
-        elif is_of_robot and is_same_robot(self.reference.urdf, submission.urdf, self.kept):
+        elif self._is_of_robot(mutant) and is_same_robot(
+            self.reference.urdf, submission.urdf, self.kept
+        ):
             fate = "same"
         else:
             fate = "survived"
-        failed = tuple(
-            result.criterion.id for result in results if result.outcome.status == "failed"
-        )
-        return MutantOutcome(mutant, fate, failed, faults)
+        return MutantOutcome(mutant, fate, tuple(_messages(results, "failed")), faults)
 
     def equivalents(self) -> Iterator[Loss]:
         """Yield what each rewriting of the reference loses: most lose nothing."""
         urdf = self.reference.urdf
         if isinstance(urdf, Read) and urdf.loaded.verdict == "clean":
             yield from self._robot_equivalents(urdf)
-        names = set(_names_in(self.rubric))
-        rewritten = package_equivalents(self.reference, names, self.robot_files)
-        of_nodes = node_equivalents(self.reference, names)
-        for family, texts in chain(file_equivalents(self.reference), rewritten, of_nodes):
+        names, reference = set(_names_in(self.rubric)), self.reference.renewed()
+        rewritten = package_equivalents(reference, names, self.robot_files)
+        of_nodes = node_equivalents(reference, names)
+        for family, texts in chain(file_equivalents(reference), rewritten, of_nodes):
             yield self._file_equivalent(family, texts)
 
     def _file_equivalent(self, family: str, texts: Mapping[str, str | None]) -> Loss:
         """Return what other texts of files lose; None for a file that is not there any more."""
-        criteria = [criterion for criterion in self.tested if not _is_of_writing(criterion, family)]
+        names = [one.id for one in self.tested if not _is_of_writing(one, family)]
         files: dict[str, bytes | None] = {}
         diffs = []
         for path, text in texts.items():
             files[path] = None if text is None else text.encode("utf-8", "surrogateescape")
             diffs.append(_text_diff(path, self.text(path), text or ""))
         changed = with_files(self.reference, files)
-        return Loss(
-            family, self._lost(changed, [criterion.id for criterion in criteria]), "\n".join(diffs)
-        )
+        return Loss(family, self._lost(changed, names), "\n".join(diffs))
 
     def _robot_equivalents(self, urdf: Read) -> Iterator[Loss]:
         root = urdf.reading.root
@@ -364,12 +361,21 @@ class Trial:
         For a URDF on its own, those that need no package.
         """
         others = ("package", "submission") if submission.is_single else ("package",)
-        asked = (criterion for criterion in self.tested if criterion.check.subject not in others)
         return [
             criterion.id
-            for criterion in asked
-            if family not in criterion.check.about.breaks_under(criterion.arguments)
+            for criterion in self.tested
+            if criterion.check.subject not in others
+            and family not in criterion.check.about.breaks_under(criterion.arguments)
         ]
+
+
+def _messages(results: Iterable[Result], status: str) -> dict[str, str]:
+    """Return the messages of the criteria that have a status."""
+    return {
+        result.criterion.id: result.outcome.message
+        for result in results
+        if result.outcome.status == status
+    }
 
 
 def _is_of_writing(criterion: Criterion, family: str) -> bool:
@@ -457,6 +463,8 @@ class RubricTest(NamedTuple):
     unexamined: tuple[str, ...]  # files that no criterion looks at
     files: int  # how many were tried
     faults: tuple[Loss, ...]  # mutants on which a check is faulty
+    # mutants that lose nothing but what takes more work than one submission may use
+    over_budget: tuple[Loss, ...]
     equivalents: tuple[str, ...]  # the families that were tried
     losses: tuple[Loss, ...]  # equivalents that lose points
     samples: SampleResults | None = None  # None where no folder was given
@@ -562,7 +570,7 @@ def _counted(
     fates = Counter(outcome.fate for outcome in graded)
     survivors: list[_Survivor] = []
     ignored: list[_Survivor] = []
-    faults: list[Loss] = []
+    unjudged: dict[str, list[Loss]] = {"faulty": [], "over budget": []}
     failed: set[str] = set()
     scored: list[tuple[str, str]] = []
     for outcome in graded:
@@ -577,13 +585,13 @@ def _counted(
                 ignored.append(survivor)
             else:
                 survivors.append(survivor)
-        elif outcome.fate == "faulty":
-            faults.append(Loss(mutant.id, outcome.faults, _mutant_diff(trial, mutant)))
+        elif outcome.fate in unjudged:
+            unjudged[outcome.fate].append(
+                Loss(mutant.id, outcome.faults, _mutant_diff(trial, mutant))
+            )
     idle = [criterion.id for criterion in trial.tested if criterion.id not in failed]
     is_interrupted = rest is None
     equivalents, unexamined, files = rest or _Rest([], [], 0)
-    names = [loss.name for loss in equivalents]
-    losses = [loss for loss in equivalents if loss.criteria]
     return RubricTest(
         reference=trial.report,
         total=len(every),
@@ -592,29 +600,26 @@ def _counted(
         same=fates["same"],
         survivors=tuple(survivors),
         ignored=tuple(ignored),
-        unused=_unused_patterns(trial.rubric, every),
+        unused=tuple(_unused_patterns(trial.rubric, every)),
         idle=() if is_interrupted else tuple(idle),
         unexamined=tuple(unexamined),
         files=files,
-        faults=tuple(faults),
-        equivalents=tuple(names),
-        losses=tuple(losses),
+        faults=tuple(unjudged["faulty"]),
+        over_budget=tuple(unjudged["over budget"]),
+        equivalents=tuple(loss.name for loss in equivalents),
+        losses=tuple(loss for loss in equivalents if loss.criteria),
         samples=samples,
         kinds=tuple(scores_by_kind(scored)),
         is_interrupted=is_interrupted,
     )
 
 
-def _unused_patterns(rubric: Rubric, mutants: Sequence[Mutant]) -> tuple[str, ...]:
-    """Return the patterns of ignored mutants that no mutant matches."""
-    unused: list[str] = []
+def _unused_patterns(rubric: Rubric, mutants: Sequence[Mutant]) -> Iterator[str]:
+    """Yield the patterns of ignored mutants that no mutant matches."""
     for row in rubric.ignored:
-        unused += [
-            pattern
-            for pattern in row.mutants
-            if not any(_matches(mutant, pattern) for mutant in mutants)
-        ]
-    return tuple(unused)
+        for pattern in row.mutants:
+            if not any(_matches(mutant, pattern) for mutant in mutants):
+                yield pattern
 
 
 def _survivor(trial: Trial, mutant: Mutant) -> _Survivor:

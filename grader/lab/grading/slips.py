@@ -201,8 +201,11 @@ def _corrected(submission: Submission, slips: Iterable[Slip]) -> Submission:
     urdf = submission.urdf
     is_of_robot = all(path.endswith((".urdf", ".xacro")) for path in files)
     # A launch file that runs xacro fails if xacro writes a warning.
-    is_run = isinstance(urdf, Read) and urdf.is_expanded and submission.package is not None
-    if isinstance(urdf, Read) and is_of_robot and not is_run:
+    if (
+        isinstance(urdf, Read)
+        and is_of_robot
+        and (submission.package is None or not urdf.is_expanded)
+    ):
         return with_urdf(submission, files)
     return with_files(submission, files)
 

@@ -19,18 +19,13 @@ _Files = Mapping[
 ]  # the new content of files by path; None for one that is no longer there
 
 
-def _group_by_file(edits: Iterable[Edit]) -> dict[str, list[Edit]]:
-    """Return the edits of each file, by its path."""
+def edited_files(submission: Submission, edits: Iterable[Edit]) -> _Files | None:
+    """Return the files of a submission that edits change; None where the edits do not fit."""
     by_path: dict[str, list[Edit]] = {}
     for edit in edits:
         by_path.setdefault(edit.path, []).append(edit)
-    return by_path
-
-
-def edited_files(submission: Submission, edits: Iterable[Edit]) -> _Files | None:
-    """Return the files of a submission that edits change; None where the edits do not fit."""
     files: dict[str, bytes | None] = {}
-    for path, of_file in _group_by_file(edits).items():
+    for path, of_file in by_path.items():
         before = content(submission, path)
         text = (before or b"").decode("utf-8", "surrogateescape")
         renamed = next((edit.renamed for edit in of_file if edit.renamed), "")
@@ -55,6 +50,7 @@ def with_urdf(submission: Submission, files: _Files) -> Submission:
 
     For edits of the URDF and of xacro that it includes.
     """
+    submission = submission.renewed()
     urdf = submission.urdf
     assert isinstance(urdf, Read)
     is_renamed = files.get(urdf.path, b"") is None

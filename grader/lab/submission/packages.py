@@ -1,7 +1,6 @@
 """The graded package of a submission, and the reasons against the others."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from grader.base.text import (
     MAX_NAMED,
@@ -11,6 +10,7 @@ from grader.base.text import (
 from grader.ros.package.finding import (
     is_backup,
     missing_files,
+    renewed_packages,
 )
 from grader.ros.package.package import NO_PACKAGE, Package
 
@@ -20,16 +20,14 @@ BACKUP = "it is named like a backup"
 
 
 def with_preferred(packages: Sequence[Package], preferred: Package) -> tuple[Package, ...]:
-    """Return the packages read anew, with a table in which `preferred` is the one of its name.
+    """Return the packages, renewed, with a table in which `preferred` is the one of its name.
 
     Of several packages of one name, ROS 2 would find the first in the environment; for the files
     of a robot, its own package is meant.
     """
-    table: dict[str, Package] = {}
-    renewed = {package: replace(package, packages=table) for package in packages}
-    for package in packages:
-        table.setdefault(package.name, renewed[package])
-    table[preferred.name] = renewed[preferred]
+    renewed = renewed_packages(packages, preferred.work)
+    best = renewed[preferred]
+    best.packages[best.name] = best
     return tuple(renewed.values())
 
 

@@ -207,6 +207,11 @@ class Submission(OpenedWorkspace):
         return self.cost > _MAX_COST or is_much or self.budget.used > self.budget.limit // 10
 
     @property
+    def is_over_budget(self) -> bool:
+        """Whether reading it takes more work than one submission may use, so not all is decided."""
+        return self.budget.is_spent or any(one.budget.is_spent for one in self.packages)
+
+    @property
     def has_urdf(self) -> bool:
         """Return whether there is a URDF that could be read, even if ROS 2 rejects it."""
         return isinstance(self.urdf, Read)
@@ -293,13 +298,32 @@ class Submission(OpenedWorkspace):
 
         They apply to its launch files, and to its robot if it is xacro.
         """
-        known = {
-            package: package.under(arguments) for package in (*self.packages, *self.neighbours)
-        }
+        packages = (*self.packages, *self.neighbours)
+        changed = self._with_packages({package: package.under(arguments) for package in packages})
+        if not isinstance(self.urdf, Read) or not self.urdf.has_xacro:
+            return changed
+        surroundings = changed.surroundings(changed.budget)._replace(launch_arguments=arguments)
+        return replace(changed, urdf=read_as_ros(self.urdf.data, self.urdf.path, surroundings))
+
+    def renewed(self) -> "Submission":
+        """Return the submission as if nothing of its packages were read.
+
+        So what is left for one edited copy does not depend on those that were graded before.
+        """
+        packages = self.packages or self.neighbours
+        if not packages:
+            return self
+        # Late: a URDF on its own needs no search.
+        from grader.ros.package.finding import renewed_packages
+
+        return self._with_packages(renewed_packages(packages, Budget(packages[0].work.limit)))
+
+    def _with_packages(self, known: Mapping[Package, Package]) -> "Submission":
+        """Return the submission with other packages in place of its own."""
         lab_packages = {}
         for name, package in self.lab_packages.items():
             lab_packages[name] = known.get(package, package)
-        changed = replace(
+        return replace(
             self,
             packages=tuple(map(known.__getitem__, self.packages)),
             neighbours=tuple(map(known.__getitem__, self.neighbours)),
@@ -307,10 +331,6 @@ class Submission(OpenedWorkspace):
             lab_packages=lab_packages,
             budget=Budget(),
         )
-        if not isinstance(self.urdf, Read) or not self.urdf.has_xacro:
-            return changed
-        surroundings = changed.surroundings(changed.budget)._replace(launch_arguments=arguments)
-        return replace(changed, urdf=read_as_ros(self.urdf.data, self.urdf.path, surroundings))
 
     def surroundings(self, budget: Budget, tree: Tree | None = None) -> Surroundings:
         """Return the files around its URDF: its own, or other ones."""

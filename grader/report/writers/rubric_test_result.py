@@ -61,6 +61,11 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     lines += _listed("These equivalents of the reference lose points:", test.losses, width)
     lines += _listed("These samples differ from their expected.toml:", differing, width)
     lines += _listed("On these mutants a check is faulty:", test.faults, width)
+    lines += _listed(
+        "These mutants take more work than one submission may use, and do not count:",
+        test.over_budget,
+        width,
+    )
     lines += _listed("These mutants of the reference get full marks:", _by_element(test), width)
     if test.survivors:
         lines += ["", "To accept a mutant, add it to [[test.ignore]] with a reason."]
@@ -147,6 +152,8 @@ def _mutants_line(test: RubricTest) -> str:
         line += f", {test.same} {'is' if test.same == 1 else 'are'} the same robot"
     if test.ignored:
         line += f", {len(test.ignored)} ignored"
+    if test.over_budget:
+        line += f", {len(test.over_budget)} over budget"
     return f"{line}, {_count_or_none(len(test.survivors), 'survives', 'survive')}"
 
 
@@ -251,7 +258,7 @@ RUBRIC_TEST = JsonObject(
         "samples": Maybe(JsonObject({**each(TOTAL, "tried skipped"), "different": _LOSSES})),
         "mutants": (_MUTANTS, lambda test: test),
         **each(Many(_SURVIVOR), "survivors ignored"),
-        "faults": _LOSSES,
+        **each(_LOSSES, "faults over_budget"),
         "unused_patterns": (array(TEXT), "unused"),
         **each(array(TEXT), "idle unexamined"),
     }

@@ -17,7 +17,7 @@ from grader.ros.known.releases import Release
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 from grader.ros.package.robot_file import launch_folders
 from grader.ros.package.robots import RobotFile
-from grader.ros.python.budget import whole_budget
+from grader.ros.python.budget import Budget, whole_budget
 
 # The files that hide a folder, with all that is below, from colcon.
 IGNORING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
@@ -244,6 +244,15 @@ def _name_distance(package: Package, name: str) -> int:
 
 def _is_outside(folders: tuple[str, ...], path: str) -> bool:
     return not path.startswith(folders)
+
+
+def renewed_packages(packages: Sequence[Package], work: Budget) -> dict[Package, Package]:
+    """Return the packages of a workspace with another budget, as if nothing of them were read."""
+    table: dict[str, Package] = {}
+    renewed = {one.folder: replace(one, packages=table, work=work) for one in packages}
+    for name, package in packages[0].packages.items():
+        table[name] = renewed[package.folder]
+    return dict(zip(packages, renewed.values(), strict=True))
 
 
 def _inner_folders(files: Tree, folder: str, folders: Sequence[str]) -> tuple[str, ...]:

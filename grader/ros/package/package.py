@@ -83,11 +83,10 @@ class Package:
     # Folders of packages in it, each with a slash, whose files it has: a build copies them.
     inner: tuple[str, ...] = ()
     memory: Memory = field(default_factory=Memory)
+    own_memory: Memory = field(default_factory=Memory)  # of its copies: they have the same files
     arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
     releases: "tuple[Release, ...]" = ()  # for which it is graded; none: any
     work: Budget = field(default_factory=Budget)  # to read and compare all files of the workspace
-    # The package without other launch arguments: what a build installs does not depend on them.
-    _original: "Package | None" = None
     budget: Budget = field(init=False)  # of the evaluation of its files
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False)
@@ -106,11 +105,8 @@ class Package:
         return path.startswith(self.path(""))
 
     def under(self, arguments: "Mapping[str, str]") -> "Package":
-        """Return the package with its launch files under these arguments.
-
-        The rest is not read again.
-        """
-        return replace(self, arguments=arguments, _original=self._original or self)
+        """Return the package with its launch files under these arguments."""
+        return replace(self, arguments=arguments)
 
     @property
     def name(self) -> str:
@@ -256,8 +252,9 @@ class Package:
     @cached_property
     def installation(self) -> "Installation | None":
         """Return what its setup.py or CMakeLists.txt installs; None without either."""
-        if self._original is not None:
-            return self._original.installation
+        return self.own_memory.recall("installation", None, self.budget, self._read_installation)
+
+    def _read_installation(self, _: object) -> "Installation | None":
         name = CMAKE if self.is_cmake else SETUP
         file = self.tree.files.get(name)
         if file is None:
@@ -286,8 +283,6 @@ class Package:
     @cached_property
     def installed(self) -> dict[str, str]:
         """Each installed file's path in the package, by its path below the prefix."""
-        if self._original is not None:
-            return self._original.installed
         if self.installation is not None:
             return self.installation.installed()
         return {}

@@ -51,6 +51,7 @@ class Budget:
         self.limit = self.left = limit
         self.stand_ins = stand_ins
         self.whole = whole
+        self.apart = 0  # parts that were charged, and are no part of the cost of other work
 
     @property
     def used(self) -> int:
@@ -79,13 +80,30 @@ class Budget:
 
     def take_of_whole(self, parts: int) -> bool:
         """Charge parts to the budget of the workspace alone; return whether they were left."""
-        if self.whole is not None:
-            self.whole.left -= parts
+        self._take(0, parts)
         return not self.is_spent
 
+    def _take(self, parts: int, of_whole: int) -> None:
+        self.left -= parts
+        if self.whole is not None:
+            self.whole.left -= of_whole
+
     def mark(self) -> tuple[int, int]:
-        """Return the parts that are left, of this budget and of that of all files."""
-        return self.left, self.whole.left if self.whole is not None else 0
+        """Return the parts that are left, of this budget and of that of all files.
+
+        What is set apart counts as left.
+        """
+        whole = self.whole
+        return self.left + self.apart, whole.left + whole.apart if whole is not None else 0
+
+    def set_apart(self, cost: tuple[int, int]) -> None:
+        """Leave work out of the marks that was charged, as two of them tell.
+
+        Who asks first has it done for all others, so it is no part of what else is done then.
+        """
+        self.apart += cost[0]
+        if self.whole is not None:
+            self.whole.apart += cost[1]
 
     def repeat(self, cost: tuple[int, int]) -> bool:
         """Charge again what was charged for the same work, as two marks tell.
@@ -95,9 +113,8 @@ class Budget:
         cost_here, of_whole = cost
         if cost_here > self.left or (self.whole is not None and of_whole > self.whole.left):
             return False
-        self.left -= cost_here
-        if self.whole is not None:
-            self.whole.left -= of_whole
+        self._take(cost_here, of_whole)
+        self.set_apart(cost)
         return True
 
     def measure(self, value: py.Value, kind: str = "plain") -> int:
