@@ -16,10 +16,40 @@ import tomli
 from grader.ros.known.python_names import PYTHON_NAMES_FILE
 
 # Modules whose names launch files and setup.py import.
-LISTED = """
-builtins codecs collections configparser contextlib datetime errno fnmatch functools glob io itertools json logging math
-operator os os.path pathlib platform random re shutil stat string subprocess sys tempfile textwrap time typing warnings
-""".split()
+LISTED = [
+    "builtins",
+    "codecs",
+    "collections",
+    "configparser",
+    "contextlib",
+    "datetime",
+    "errno",
+    "fnmatch",
+    "functools",
+    "glob",
+    "io",
+    "itertools",
+    "json",
+    "logging",
+    "math",
+    "operator",
+    "os",
+    "os.path",
+    "pathlib",
+    "platform",
+    "random",
+    "re",
+    "shutil",
+    "stat",
+    "string",
+    "subprocess",
+    "sys",
+    "tempfile",
+    "textwrap",
+    "time",
+    "typing",
+    "warnings",
+]
 # It runs in each interpreter, so it is written for Python 3.8. What a module defines by __getattr__ is not in dir(), so that it
 # is asked for each name that another version has. Debian has tkinter in a package of its own.
 _PROGRAM = f"""
@@ -44,7 +74,7 @@ modules = set(below([library, os.path.join(library, "lib-dynload")], ""))
 modules |= set(getattr(sys, "stdlib_module_names", sys.builtin_module_names)) | set(filter(has_module, asked.get("", ["os.path", "collections.abc"])))
 names = {{"": [name for name in modules if not skipped & {{name}} and "sysconfigdata" not in name]}}
 owners = {{name: importlib.import_module(name) for name in {LISTED}}}
-owners.update((type(value).__name__, value) for value in values)
+owners.update(("class " + type(value).__name__, value) for value in values)
 for key, owner in owners.items():
     others = asked.get(key, []) + collections.abc.__all__
     every = [*dir(owner), *(name for name in others if hasattr(owner, name))]
@@ -72,7 +102,10 @@ def write_names(interpreters: Sequence[Sequence[str]]) -> str:
     by_version = dict(list_names(interpreter, asked) for interpreter in interpreters)
     head = PYTHON_NAMES_FILE.read_text("utf-8").partition("[always]")[0]
     assert {*by_version} == {*tomli.loads(head)["python"].values()}
-    always = {key: asked[key].intersection(*(names[key] for names in by_version.values())) for key in asked}
+    always = {
+        key: asked[key].intersection(*(names[key] for names in by_version.values()))
+        for key in asked
+    }
     lines = [head.rstrip(), "", *_table("always", always)]
     for version, names in by_version.items():
         more = {key: value - always[key] for key, value in names.items()}
@@ -89,4 +122,6 @@ def _table(header: str, names: _Names) -> list[str]:
 
 
 if __name__ == "__main__":
-    Path(PYTHON_NAMES_FILE).write_text(write_names([each.split() for each in sys.argv[1:]]), "utf-8")
+    Path(PYTHON_NAMES_FILE).write_text(
+        write_names([each.split() for each in sys.argv[1:]]), "utf-8"
+    )

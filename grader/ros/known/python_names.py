@@ -40,7 +40,7 @@ def python_names(key: str, releases: tuple[Release, ...] = ()) -> frozenset[str]
     (True, False)
     """
     tables = _tables()
-    names = set(tables["always"][key].split())
+    names = set(tables["always"].get(key, "").split())
     for release in releases or _DEFAULT:
         names.update(tables[tables["python"][release]].get(key, "").split())
     return frozenset(names)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from typing import Any
 
+from grader.ros.known.python_names import python_names
 from grader.ros.python import values as py
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import (
@@ -27,7 +28,10 @@ _ABOVE = frozenset(  # what may be above a path
     {f"os.path.{name}" for name in ("dirname", "normpath", "abspath", "realpath")}
     | {"pathlib.Path.resolve", "pathlib.Path.absolute"}
 )
-_FAST_GROWING = ("factorial", "comb", "perm", "prod", "lcm")
+_NOT_EVALUATED = (
+    *("factorial", "comb", "perm", "prod", "lcm"),  # they grow fast
+    *("sumprod", "fma"),  # newer than the oldest Python that runs the grader
+)
 
 # Calls a function value with arguments, for the functions that call others: map, filter, sorted.
 _Apply = Callable[[py.Value, list[py.Value]], py.Value]
@@ -117,7 +121,13 @@ def _sum(values: py.Value, start: py.Value = 0) -> py.Value:
     items = items_of(values)
     if any(isinstance(item, list | tuple) for item in (start, *items)):
         _refuse("the sum of lists")
-    return sum(items, start)
+    total, lost = sum((), start), 0.0
+    for item in items:
+        before, total = total, total + item
+        if isinstance(before, float) and isinstance(item, float):
+            large, small = sorted((before, item), key=abs, reverse=True)
+            lost += large - total + small
+    return total + lost if lost and math.isfinite(lost) else total
 
 
 def _round(number: py.Value, ndigits: py.Value = None) -> py.Value:
@@ -235,11 +245,16 @@ BUILTINS: Mapping[str, py.PlainFunction] = {
     },
     "str": py.PlainFunction("str", lambda *args: str_of(*args) if args else "", "text"),
 }
+_CONSTANTS = ("pi", "e", "tau", "inf", "nan")
+
+
+def _math_value(name: str) -> py.Value:
+    if name in _CONSTANTS:
+        return getattr(math, name)
+    run = _refuse_function(name) if name in _NOT_EVALUATED else getattr(math, name)
+    return py.PlainFunction(name, run)
+
+
 MATH: Mapping[str, py.Value] = {
-    **{name: getattr(math, name) for name in ("pi", "e", "tau", "inf", "nan")},
-    **{
-        name: py.PlainFunction(name, _refuse_function(name) if name in _FAST_GROWING else value)
-        for name, value in vars(math).items()
-        if callable(value) and not name.startswith("_")
-    },
+    name: _math_value(name) for name in sorted(python_names("math", ("jazzy", "lyrical")))
 }

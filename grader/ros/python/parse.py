@@ -6,7 +6,7 @@ import sys
 import tokenize
 import warnings
 from codecs import lookup
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from io import BytesIO
 from typing import NamedTuple
@@ -14,21 +14,35 @@ from typing import NamedTuple
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.reuse import reuse
 from grader.base.source import Location, Source
+from grader.ros.known.python_names import python_versions
+from grader.ros.known.releases import Release
 from grader.ros.python.walking import children, walk
 
 _SLOW_ENCODINGS = (
     "idna",
     "punycode",
 )  # encodings of domain names; their time grows with the square of the length
-_JAZZY = (3, 12)  # the Python version of ROS 2 Jazzy
-# What Python 3.12 added: type parameters and the statement type (PEP 695), and in a line, an
-# f-string whose braces are still open at its quote or at the end of the line (PEP 701).
-_TYPES = re.compile(
-    r"^[ \t]*(?:type[ \t]+\w+[ \t]*[=\[]|(?:async[ \t]+)?(?:def|class)[ \t]+\w+[ \t]*\[)",
-    re.MULTILINE,
+_Version = tuple[int, int]
+# What a version of Python added, as it stands in a line. A brace of an f-string that is still open
+# at its quote, or at the end of the line, is one of PEP 701.
+_F_STRINGS = (
+    (3, 12),
+    re.compile(r"""\b[rR]?[fF][rR]?(['"])(?:(?!\1).)*?(?<!\{)\{(?:(?!\1)[^{}])*(?:\1|$)"""),
 )
-_OPEN_BRACES = re.compile(
-    r"""\b[rR]?[fF][rR]?(['"])(?:(?!\1).)*?(?<!\{)\{(?:(?!\1)[^{}])*(?:\1|$)"""
+_ADDED = (
+    ((3, 14), re.compile(r"""^\s*except\*?\s+[\w.]+\s*,|(?<![\w'"])[rR]?[tT][rR]?['"]""")),
+    ((3, 13), re.compile(r"^\s*(?:type|(?:async\s+)?def|class)\s+\w+\s*\[[^\]]*=")),
+    ((3, 12), re.compile(r"^\s*(?:type\s+\w+\s*[=\[]|(?:(?:async\s+)?def|class)\s+\w+\s*\[)")),
+    _F_STRINGS,
+    ((3, 11), re.compile(r"^\s*except\s*\*")),
+    ((3, 10), re.compile(r"^\s*(?:match|case)\b.*:")),
+)
+# Messages of newer versions of Python, where older ones say no more than that the syntax is
+# invalid, or say less.
+_NEWER_MESSAGES = re.compile(
+    "Expected one or more names after 'import'|expected argument value expression"
+    r"|Invalid star expression|(?<=invalid syntax)\. Is this intended .*"
+    r"|; perhaps you escaped the end quote\?|f-(?=string literal)|.* only supported in Python .*"
 )
 _MAX_SEARCHED = 1_000  # characters of a line
 _FUNCTIONS = ("def ", "lambda", "for ")  # what has code of its own; a comprehension has
@@ -61,6 +75,7 @@ class Code(NamedTuple):
     source: Source
     tree: ast.Module
     conflict: tuple[str, Position] | None = None  # of git, without which it was parsed
+    releases: tuple[Release, ...] = ()  # whose Python reads it; none: that of Jazzy
 
 
 @lru_cache(maxsize=4)  # the readers of a module follow each other
@@ -94,14 +109,14 @@ def location_in(source: Source, position: Position) -> Location:
     return Location(source.path, position.line, column + 1)
 
 
-def parse(data: bytes, path: str) -> Code | SyntaxFault:
-    """Parse the bytes of a Python file.
+def parse(data: bytes, path: str, releases: tuple[Release, ...] = ()) -> Code | SyntaxFault:
+    """Parse the bytes of a Python file, as the newest Python of some releases does.
 
     Never raises: what Python refuses, also for its depth, is a SyntaxFault.
     """
     resolved = resolve_conflicts(data)
     try:
-        parsed = _parse(resolved.data if resolved is not None else data, path)
+        parsed = _parse(resolved.data if resolved is not None else data, path, releases)
         if resolved is None:
             return parsed
         if isinstance(parsed, Code):
@@ -113,8 +128,8 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
         )
 
 
-@reuse
-def _parse(data: bytes, path: str) -> Code | SyntaxFault:
+def _decode(data: bytes, path: str) -> Source | SyntaxFault:
+    """Return the text of a file, as Python decodes it."""
     try:
         encoding, _ = tokenize.detect_encoding(BytesIO(data).readline)
         if lookup(encoding).name in _SLOW_ENCODINGS:
@@ -134,52 +149,95 @@ def _parse(data: bytes, path: str) -> Code | SyntaxFault:
     if "\0" in text:
         line = text.count("\n", 0, text.index("\0")) + 1
         return SyntaxFault(source, "source code cannot contain null bytes", Location(path, line, 1))
+    return source
+
+
+@reuse
+def _parse(data: bytes, path: str, releases: tuple[Release, ...]) -> Code | SyntaxFault:
+    source = _decode(data, path)
+    if isinstance(source, SyntaxFault):
+        return source
+    text = source.text
+    version = max(python_versions(releases))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter(
                 "ignore"
             )  # such as an invalid escape sequence, which Python accepts
             try:
-                tree = ast.parse(text, feature_version=_JAZZY)
+                tree = ast.parse(text, feature_version=version)
             except SystemError:
                 # CPython 3.11 miscounts its depth if its garbage collector runs meanwhile: try
                 # again
-                tree = ast.parse(text, feature_version=_JAZZY)
+                tree = ast.parse(text, feature_version=version)
             # Never run: the compiler finds errors that the grammar allows. It compares the code of
             # equal functions with each other, so that many take long.
             if sum(map(text.count, _FUNCTIONS)) <= _MAX_FUNCTIONS:
                 compile(tree, path, "exec", dont_inherit=True)
-            return Code(source, tree)
+            code = Code(source, tree, releases=releases)
+            if version >= _F_STRINGS[0]:
+                return code
+            lines = [node.lineno for node in walk(tree) if isinstance(node, ast.JoinedStr)]
+            return _newer_syntax(source, lines, version, [_F_STRINGS]) or code
     except SyntaxError as error:
-        location = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
-        return SyntaxFault(
-            source,
-            _message_of(error),
-            location,
-            is_certain=not _is_of_newer_python(error, text),
-            reason=error.msg,
+        line = max(error.lineno or 1, 1)
+        location = Location(path, line, _column_of(error))
+        return _newer_syntax(source, (line, line - 1), version) or SyntaxFault(
+            source, _message_of(error), location, reason=_reason_of(error)
         )
     except (ValueError, OverflowError):
         return SyntaxFault(source, _TOO_DEEP, Location(path, 1, 1))
 
 
+def _newer_syntax(
+    source: Source,
+    lines: Iterable[int],
+    version: _Version,
+    added: Iterable[tuple[_Version, re.Pattern[str]]] = _ADDED,
+) -> SyntaxFault | None:
+    """Return that one of some lines needs a newer version of Python than reads the file.
+
+    That is the version of the release, which certainly refuses the file, or the one that runs the
+    grader.
+    """
+    running = sys.version_info[:2]
+    for line in lines:
+        text = source.line(line)[:_MAX_SEARCHED].rstrip() if line else ""
+        for needed, pattern in added:
+            if needed > min(version, running) and pattern.search(text):
+                is_certain = needed > version
+                message = f"line {line} needs Python {_shown(needed)}, and "
+                if is_certain:
+                    message += f"the release has Python {_shown(version)}"
+                else:
+                    message += f"Python {_shown(running)} runs the grader"
+                return SyntaxFault(source, message, Location(source.path, line, 1), is_certain)
+    return None
+
+
+def _shown(version: _Version) -> str:
+    return "{}.{}".format(*version)
+
+
+def _reason_of(error: SyntaxError) -> str:
+    """Return Python's message as each version has it."""
+    return _NEWER_MESSAGES.sub("", error.msg) or "invalid syntax"
+
+
+def _column_of(error: SyntaxError) -> int:
+    """Return the column as each version gives it: of what follows a name without a value."""
+    if error.msg.startswith("expected argument value"):
+        return error.end_offset or 1
+    return max(error.offset or 1, 1)
+
+
 def _message_of(error: SyntaxError) -> str:
-    """Return Python's message, with the word or character where it says no more than a place."""
-    line, start = error.text or "", max((error.offset or 1) - 1, 0)
-    token = re.compile(r"\w{1,30}|\S").match(line, start)
-    if error.msg != "invalid syntax" or token is None:
-        return error.msg
-    return f"{error.msg} at {token[0]!r}"
-
-
-def _is_of_newer_python(error: SyntaxError, text: str) -> bool:
-    """Return whether the Python of ROS 2 Jazzy may accept what this older Python refuses."""
-    if sys.version_info >= _JAZZY:
-        return False
-    in_f_string = error.msg.startswith("f-string") or _OPEN_BRACES.search(
-        (error.text or "")[:_MAX_SEARCHED].rstrip()
-    )
-    return bool(in_f_string or _TYPES.search(text))
+    """Return the message, with the word or character where it says no more than a place."""
+    reason = _reason_of(error)
+    token = re.compile(r"\w{1,30}|\S").match(error.text or "", _column_of(error) - 1)
+    if reason != "invalid syntax" or token is None:
+        return reason
+    return f"{reason} at {token[0]!r}"
 
 
 def parse_expression(text: str) -> ast.expr | str | None:
