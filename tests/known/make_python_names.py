@@ -51,7 +51,7 @@ LISTED = [
     "warnings",
 ]
 # It runs in each interpreter, so it is written for Python 3.8. What a module defines by __getattr__ is not in dir(), so that it
-# is asked for each name that another version has. Debian has tkinter in a package of its own.
+# is asked for each name that another version has. A path is evaluated as a PurePosixPath, and is a PosixPath where it runs. Debian has tkinter in a package of its own.
 _PROGRAM = f"""
 import collections.abc, importlib, importlib.util, io, json, os, pathlib, pkgutil, sys, warnings
 warnings.simplefilter("ignore")
@@ -74,7 +74,7 @@ modules = set(below([library, os.path.join(library, "lib-dynload")], ""))
 modules |= set(getattr(sys, "stdlib_module_names", sys.builtin_module_names)) | set(filter(has_module, asked.get("", ["os.path", "collections.abc"])))
 names = {{"": [name for name in modules if not skipped & {{name}} and "sysconfigdata" not in name]}}
 owners = {{name: importlib.import_module(name) for name in {LISTED}}}
-owners.update(("class " + type(value).__name__, value) for value in values)
+owners.update(("class " + type(value).__name__.replace("Posix", "PurePosix"), value) for value in values)
 for key, owner in owners.items():
     others = asked.get(key, []) + collections.abc.__all__
     every = [*dir(owner), *(name for name in others if hasattr(owner, name))]

@@ -3,7 +3,8 @@
 The Python that runs the grader is not asked, so that each version gives the same marks.
 """
 
-from collections.abc import Collection, Mapping
+import re
+from collections.abc import Collection
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -18,18 +19,14 @@ _DEFAULT: tuple[Release, ...] = ("jazzy",)
 
 
 @cache
-def _tables() -> Mapping[str, Mapping[str, str]]:
-    tables: dict[str, Any] = tomli.loads(PYTHON_NAMES_FILE.read_text("utf-8"))
-    return tables
+def _tables() -> Any:
+    return tomli.loads(PYTHON_NAMES_FILE.read_text("utf-8"))
 
 
-def python_versions(releases: Collection[Release]) -> list[tuple[int, int]]:
-    """Return the versions of Python that some releases run with; without any, that of Jazzy."""
-    versions = []
-    for release in releases or _DEFAULT:
-        major, _, minor = _tables()["python"][release].partition(".")
-        versions.append((int(major), int(minor)))
-    return versions
+def python_versions(releases: Collection[Release]) -> list[int]:
+    """Return the minor versions of Python that releases run with; without any, that of Jazzy."""
+    versions = _tables()["python"]
+    return [int(versions[release].removeprefix("3.")) for release in releases or _DEFAULT]
 
 
 @cache
@@ -40,7 +37,18 @@ def python_names(key: str, releases: tuple[Release, ...] = ()) -> frozenset[str]
     (True, False)
     """
     tables = _tables()
-    names = set(tables["always"].get(key, "").split())
+    names = {*tables["always"].get(key, "").split(), *tables["besides"].get(key, "").split()}
     for release in releases or _DEFAULT:
         names.update(tables[tables["python"][release]].get(key, "").split())
     return frozenset(names)
+
+
+def shared_message(text: str) -> str:
+    """Return a message of Python as each version that runs the grader has it.
+
+    >>> shared_message("float division by zero"), shared_message("expected a positive input")
+    ('division by zero', 'math domain error')
+    """
+    for pattern, shared in _tables()["messages"].items():
+        text = re.sub(pattern, shared, text)
+    return text

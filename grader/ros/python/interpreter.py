@@ -95,8 +95,8 @@ def _catches(kind: ast.expr | None, raised: py.EvaluationFails, at: Position) ->
 
 def _exception(name: str) -> object:
     """Return a built-in class of errors that every version of Python has."""
-    is_everywhere = all(name in python_names("builtins", (release,)) for release in RELEASES)
-    return getattr(builtins, name) if is_everywhere else None
+    is_old = name in python_names("builtins", RELEASES[:1])
+    return getattr(builtins, name) if is_old else None
 
 
 def _full_name(node: ast.expr) -> str:

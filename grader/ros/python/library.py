@@ -23,57 +23,6 @@ MAX_PATH = 4_096  # characters
 # stands for the name of the package's folder, which the workspace does not determine
 PACKAGE_FOLDER = "<package>"
 _OWN = ("dirname", "basename", "normpath", "split", "splitext", "isabs")
-_SETUPTOOLS_PUBLIC = (
-    "setup",
-    "find_packages",
-    "find_namespace_packages",
-    "Command",
-    "Distribution",
-    "Extension",
-)
-_SETUPTOOLS = frozenset(
-    {
-        "setup",
-        "find_packages",
-        "find_namespace_packages",
-        "Command",
-        "Distribution",
-        "Extension",
-        "Require",
-        "depends",
-        "dist",
-        "command",
-        "errors",
-        "extension",
-        "PackageFinder",
-        "PEP420PackageFinder",
-        "sic",
-        "SetuptoolsDeprecationWarning",
-        "build_meta",
-        "glob",
-        "msvc",
-        "monkey",
-        "namespaces",
-        "sandbox",
-        "unicode_utils",
-        "wheel",
-        "windows_support",
-        "version",
-        "archive_util",
-        "dep_util",
-        "discovery",
-        "config",
-        "installer",
-        "launch",
-        "logging",
-        "package_index",
-        "convert_path",
-        "findall",
-        "distutils",
-        "warnings",
-        "modified",
-    }
-)
 _NOT_MISSPELT = ("psutil", "setuptools", "distutils")
 _INSTALLED_WITH_ROS = (
     "pkg_resources",
@@ -195,7 +144,7 @@ def import_error(
 
 @lru_cache(maxsize=256)
 def _import_error(module: str, name: str, releases: tuple[Release, ...]) -> str | Uncertain | None:
-    if name != "*" and (module == "setuptools" or (module and python_names(module))):
+    if name != "*" and module and python_names(module):
         return attribute_error(module, name, releases)
     full, modules = module or name, python_names(MODULES, releases)
     top = full.split(".")[0]
@@ -214,19 +163,15 @@ def _import_error(module: str, name: str, releases: tuple[Release, ...]) -> str 
 
 
 def _in_python(releases: tuple[Release, ...]) -> str:
-    return " in Python {}.{}".format(*max(python_versions(releases)))
+    return f" in Python 3.{max(python_versions(releases))}"
 
 
 def attribute_error(module: str, name: str, releases: tuple[Release, ...] = ()) -> str | None:
     """Return what is wrong with `module.name`; None where it works or this is unknown."""
-    if module == "setuptools":
-        names: Collection[str] = _SETUPTOOLS
-        guess = did_you_mean(name, _SETUPTOOLS_PUBLIC[:3])
-    else:
-        names = python_names(module, releases)
-        guess = did_you_mean(name, sorted(names))
-        if name in python_names(module, RELEASES):
-            guess = _in_python(releases)
+    names = python_names(module, releases)
+    guess = did_you_mean(name, sorted(names))
+    if name in python_names(module, RELEASES):
+        guess = _in_python(releases)
     is_module = f"{module}.{name}" in python_names(MODULES, releases)
     if not names or name in names or name.startswith("_") or is_module:
         return None

@@ -46,11 +46,7 @@ def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
 
 def has_attribute(owner: py.Value, name: str, releases: tuple[Release, ...] = ()) -> bool:
     """Return whether a plain value has an attribute, or may have one that is private."""
-    kind = type(owner).__name__
-    if isinstance(owner, PurePosixPath):
-        kind = "PosixPath"
-    elif isinstance(owner, dict):
-        kind = "dict"
+    kind = "dict" if isinstance(owner, dict) else type(owner).__name__
     names = python_names(f"class {kind}", releases)
     return isinstance(owner, py.PLAIN) and (name in names or name.startswith("_"))
 

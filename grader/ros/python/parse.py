@@ -14,7 +14,7 @@ from typing import NamedTuple
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.reuse import reuse
 from grader.base.source import Location, Source
-from grader.ros.known.python_names import python_versions
+from grader.ros.known.python_names import python_versions, shared_message
 from grader.ros.known.releases import Release
 from grader.ros.python.walking import children, walk
 
@@ -22,28 +22,23 @@ _SLOW_ENCODINGS = (
     "idna",
     "punycode",
 )  # encodings of domain names; their time grows with the square of the length
-_Version = tuple[int, int]
-# What a version of Python added, as it stands in a line. A brace of an f-string that is still open
-# at its quote, or at the end of the line, is one of PEP 701.
+# What a minor version of Python added, as it stands in a line: PEP 758 and 750, 696, 695, 701. A
+# brace of an f-string that is open at its quote, at a backslash or at the end of the line is one of
+# PEP 701. `feature_version` tells for older ones.
 _F_STRINGS = (
-    (3, 12),
-    re.compile(r"""\b[rR]?[fF][rR]?(['"])(?:(?!\1).)*?(?<!\{)\{(?:(?!\1)[^{}])*(?:\1|$)"""),
+    12,
+    re.compile(
+        r"""\b[rR]?[fF][rR]?(['"])(?:(?!\1).)*?(?<!\{)\{(?:(?!\1)[^\\{}])*(?:\1(?=.*\})|\\|$)"""
+    ),
 )
 _ADDED = (
-    ((3, 14), re.compile(r"""^\s*except\*?\s+[\w.]+\s*,|(?<![\w'"])[rR]?[tT][rR]?['"]""")),
-    ((3, 13), re.compile(r"^\s*(?:type|(?:async\s+)?def|class)\s+\w+\s*\[[^\]]*=")),
-    ((3, 12), re.compile(r"^\s*(?:type\s+\w+\s*[=\[]|(?:(?:async\s+)?def|class)\s+\w+\s*\[)")),
+    (14, re.compile(r"""^\s*except\*?\s+[\w.]+\s*,|(?<![\w'"])[rR]?[tT][rR]?['"]""")),
+    (13, re.compile(r"^\s*(?:type|(?:async\s+)?def|class)\s+\w+\s*\[[^\]]*=")),
+    (12, re.compile(r"^\s*(?:type\s+\w+\s*[=\[]|(?:(?:async\s+)?def|class)\s+\w+\s*\[)")),
     _F_STRINGS,
-    ((3, 11), re.compile(r"^\s*except\s*\*")),
-    ((3, 10), re.compile(r"^\s*(?:match|case)\b.*:")),
 )
-# Messages of newer versions of Python, where older ones say no more than that the syntax is
-# invalid, or say less.
-_NEWER_MESSAGES = re.compile(
-    "Expected one or more names after 'import'|expected argument value expression"
-    r"|Invalid star expression|(?<=invalid syntax)\. Is this intended .*"
-    r"|; perhaps you escaped the end quote\?|f-(?=string literal)|.* only supported in Python .*"
-)
+# In it, versions of Python name other places and say other things.
+_F_STRING = re.compile(r"""\b[rR]?[fF][rR]?(['"])(?:.*?\1)?""")
 _MAX_SEARCHED = 1_000  # characters of a line
 _FUNCTIONS = ("def ", "lambda", "for ")  # what has code of its own; a comprehension has
 _MAX_FUNCTIONS = 2_000  # of a file that is compiled
@@ -158,32 +153,35 @@ def _parse(data: bytes, path: str, releases: tuple[Release, ...]) -> Code | Synt
     if isinstance(source, SyntaxFault):
         return source
     text = source.text
-    version = max(python_versions(releases))
+    minor = max(python_versions(releases))
+    # Python 3.14 does not tell with parentheses, which Python 3.9 added, by feature_version.
+    features = (3, max(minor, 9))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter(
                 "ignore"
             )  # such as an invalid escape sequence, which Python accepts
             try:
-                tree = ast.parse(text, feature_version=version)
+                tree = ast.parse(text, feature_version=features)
             except SystemError:
                 # CPython 3.11 miscounts its depth if its garbage collector runs meanwhile: try
                 # again
-                tree = ast.parse(text, feature_version=version)
+                tree = ast.parse(text, feature_version=features)
             # Never run: the compiler finds errors that the grammar allows. It compares the code of
             # equal functions with each other, so that many take long.
             if sum(map(text.count, _FUNCTIONS)) <= _MAX_FUNCTIONS:
                 compile(tree, path, "exec", dont_inherit=True)
             code = Code(source, tree, releases=releases)
-            if version >= _F_STRINGS[0]:
+            if minor >= _F_STRINGS[0]:
                 return code
             lines = [node.lineno for node in walk(tree) if isinstance(node, ast.JoinedStr)]
-            return _newer_syntax(source, lines, version, [_F_STRINGS]) or code
+            return _newer_syntax(source, lines, minor, [_F_STRINGS]) or code
     except SyntaxError as error:
         line = max(error.lineno or 1, 1)
-        location = Location(path, line, _column_of(error))
-        return _newer_syntax(source, (line, line - 1), version) or SyntaxFault(
-            source, _message_of(error), location, reason=_reason_of(error)
+        reason, column = _described(error, source.line(line))
+        message = _message_of(reason, column, source.line(line))
+        return _newer_syntax(source, (line, line - 1), minor) or SyntaxFault(
+            source, message, Location(path, line, column), reason=reason
         )
     except (ValueError, OverflowError):
         return SyntaxFault(source, _TOO_DEEP, Location(path, 1, 1))
@@ -192,49 +190,46 @@ def _parse(data: bytes, path: str, releases: tuple[Release, ...]) -> Code | Synt
 def _newer_syntax(
     source: Source,
     lines: Iterable[int],
-    version: _Version,
-    added: Iterable[tuple[_Version, re.Pattern[str]]] = _ADDED,
+    minor: int,
+    added: Iterable[tuple[int, re.Pattern[str]]] = _ADDED,
 ) -> SyntaxFault | None:
     """Return that one of some lines needs a newer version of Python than reads the file.
 
     That is the version of the release, which certainly refuses the file, or the one that runs the
     grader.
     """
-    running = sys.version_info[:2]
-    for line in lines:
-        text = source.line(line)[:_MAX_SEARCHED].rstrip() if line else ""
+    running = sys.version_info.minor
+    for line in filter(None, lines):
+        text = source.line(line)[:_MAX_SEARCHED].rstrip()
         for needed, pattern in added:
-            if needed > min(version, running) and pattern.search(text):
-                is_certain = needed > version
-                message = f"line {line} needs Python {_shown(needed)}, and "
-                if is_certain:
-                    message += f"the release has Python {_shown(version)}"
-                else:
-                    message += f"Python {_shown(running)} runs the grader"
-                return SyntaxFault(source, message, Location(source.path, line, 1), is_certain)
+            if needed > min(minor, running) and pattern.search(text):
+                other = f"Python 3.{running} runs the grader"
+                if needed > minor:
+                    other = f"the release has Python 3.{minor}"
+                message = f"line {line} needs Python 3.{needed}, and {other}"
+                return SyntaxFault(source, message, Location(source.path, line, 1), needed > minor)
     return None
 
 
-def _shown(version: _Version) -> str:
-    return "{}.{}".format(*version)
+def _described(error: SyntaxError, line: str) -> tuple[str, int]:
+    """Return what is wrong in a line, and in which column, as each version of Python says it.
 
-
-def _reason_of(error: SyntaxError) -> str:
-    """Return Python's message as each version has it."""
-    return _NEWER_MESSAGES.sub("", error.msg) or "invalid syntax"
-
-
-def _column_of(error: SyntaxError) -> int:
-    """Return the column as each version gives it: of what follows a name without a value."""
+    The versions name other places in f-strings.
+    """
+    line, column = line[:_MAX_SEARCHED], max(error.offset or 1, 1)
+    spans = [match.span() for match in _F_STRING.finditer(line)]
+    is_inside = any(start + 1 < column <= end for start, end in spans)
+    is_of_f_string = error.msg.startswith("f-string") or (error.text or line).rstrip("\n") != line
+    if spans and (is_inside or is_of_f_string):
+        return "invalid f-string", spans[0][0] + 1
     if error.msg.startswith("expected argument value"):
-        return error.end_offset or 1
-    return max(error.offset or 1, 1)
+        column = error.end_offset or 1
+    return shared_message(error.msg), column
 
 
-def _message_of(error: SyntaxError) -> str:
+def _message_of(reason: str, column: int, line: str) -> str:
     """Return the message, with the word or character where it says no more than a place."""
-    reason = _reason_of(error)
-    token = re.compile(r"\w{1,30}|\S").match(error.text or "", _column_of(error) - 1)
+    token = re.compile(r"\w{1,30}|\S").match(line, column - 1)
     if reason != "invalid syntax" or token is None:
         return reason
     return f"{reason} at {token[0]!r}"
@@ -250,7 +245,7 @@ def parse_expression(text: str) -> ast.expr | str | None:
             warnings.simplefilter("ignore")
             return ast.parse(text, mode="eval").body
     except SyntaxError as error:
-        return f"SyntaxError: {_message_of(error)}"
+        return f"SyntaxError: {_message_of(*_described(error, text), text)}"
     except (
         RecursionError,
         MemoryError,

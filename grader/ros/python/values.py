@@ -12,6 +12,8 @@ from io import StringIO
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
+from grader.ros.known.python_names import shared_message
+
 if TYPE_CHECKING:
     from grader.ros.python.parse import Position
 
@@ -367,7 +369,8 @@ def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) ->
                 "this use of a function, a namespace or an iterator is not supported"
             ) from None
         message = error.args[0] if isinstance(error, KeyError) and error.args else error
-        raise EvaluationFails(f"{type(error).__name__}: {message}", kind=type(error)) from None
+        text = f"{type(error).__name__}: {shared_message(str(message))}"
+        raise EvaluationFails(text, kind=type(error)) from None
 
 
 def iterate(value: Value) -> Iterator[Value]:
