@@ -235,8 +235,7 @@ def _read_python(
         if code.is_certain:
             syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
             return Launch(code.source, syntax)
-        unread = LaunchFault(f"the file is not read: {code.message}", code.location)
-        return Launch(code.source, unknown=(unread,), doubts=(unread,))
+        return Launch(code.source, unread=code.message)
     findings = Findings(lambda position: location_in(code.source, position))
     file = _PythonLaunchFile(context)
     entry = file.run(code, installed).get(_ENTRY)

@@ -212,10 +212,10 @@ def read_module(package: Package, path: str) -> Code | None:
 
 
 def unreadable_module(package: Package, path: str) -> SyntaxFault | None:
-    """Return why Python certainly cannot read a file of a package; None where it can, or may."""
+    """Return why Python cannot read a file of a package, certainly or in the version that runs."""
     data = package.tree.read(path, PYTHON_LIMIT)
     fault = parse(data, package.path(path), package.releases) if data is not None else None
-    return fault if isinstance(fault, SyntaxFault) and fault.is_certain else None
+    return fault if isinstance(fault, SyntaxFault) else None
 
 
 def module_path(package: Package, module: str) -> str | None:

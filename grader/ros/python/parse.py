@@ -180,7 +180,9 @@ def _parse(data: bytes, path: str, releases: tuple[Release, ...]) -> Code | Synt
         line = max(error.lineno or 1, 1)
         reason, column = _described(error, source.line(line))
         message = _message_of(reason, column, source.line(line))
-        return _newer_syntax(source, (line, line - 1), minor) or SyntaxFault(
+        # Python 3.14 refuses an except for its version at the end of the statement.
+        above = range(line, 0 if "only supported in Python" in error.msg else line - 2, -1)
+        return _newer_syntax(source, above, minor) or SyntaxFault(
             source, message, Location(path, line, column), reason=reason
         )
     except (ValueError, OverflowError):
@@ -224,6 +226,7 @@ def _described(error: SyntaxError, line: str) -> tuple[str, int]:
         return "invalid f-string", spans[0][0] + 1
     if error.msg.startswith("expected argument value"):
         column = error.end_offset or 1
+        column += len(line[column - 1 :]) - len(line[column - 1 :].lstrip())
     return shared_message(error.msg), column
 
 
