@@ -1,10 +1,8 @@
 """Python's built-in functions and those of math, as an expression may call them."""
 
-import builtins
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
 from typing import Any
 
 from grader.ros.known.python_names import python_names
@@ -23,8 +21,13 @@ from grader.ros.python.values import (
 
 _MAX_DIGITS = 400  # that round leaves
 _OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keyword")
-# What has none before Python 3.12 or 3.13.
-_WITHOUT_SIGNATURE = ("bool", "zip", "map", "filter", "format", "items", "keys", "values")
+# What takes the arguments that Python's own function takes, and no others.
+_SAME_ARGUMENTS = frozenset(
+    {
+        *("list", "tuple", "len", "reversed", "enumerate", "any", "all"),
+        *("join", "index", "count", "copy", "get", "replace", "with_name", "with_suffix"),
+    }
+)
 _OF_ANY_LETTERS = ("bool", "print")  # whatever the letters of a text are
 _ABOVE = frozenset(  # what may be above a path
     {f"os.path.{name}" for name in ("dirname", "normpath", "abspath", "realpath")}
@@ -61,12 +64,12 @@ def call(
     try:
         result = budget.checked(call_plain(function.run, *given, **kwargs), function.kind)
     except py.EvaluationFails as error:
-        if function.kind != "plain" and _OF_SIGNATURE.search(
-            str(error)
-        ):  # Python's own may take other arguments
-            wrong = _wrong_arguments(function, args, kwargs)
-            raise py.EvaluationFails(f"TypeError: {function.name}() {wrong}") from None
-        raise
+        if function.kind == "plain" or not _OF_SIGNATURE.search(str(error)):
+            raise
+        if function.name not in _SAME_ARGUMENTS:
+            _refuse(f"this use of {function.name}")
+        message = f"TypeError: {function.name}() takes other arguments"
+        raise py.EvaluationFails(message) from None
     if function.kind == "path" and (function.name in _ABOVE or str(result).startswith("..")):
         _require_below(result, args, budget)
     return result
@@ -75,24 +78,6 @@ def call(
 def _require_below(path: py.Value, given: list[py.Value], budget: Budget) -> None:
     if not all(budget.is_below(value, path) for value in given):
         raise py.Undetermined("what is above a folder that is not known is not known")
-
-
-def _wrong_arguments(
-    function: py.PlainFunction, args: list[py.Value], kwargs: dict[str, py.Value]
-) -> str:
-    """Return what is wrong with the arguments of Python's own function.
-
-    Raises Undetermined if that is not certain.
-    """
-    from inspect import signature  # late: it takes long to import
-
-    with suppress(ValueError):  # of a function whose signature is not known
-        try:
-            if function.own is not None and function.name not in _WITHOUT_SIGNATURE:
-                signature(function.own).bind(*args, **kwargs)
-        except TypeError as error:
-            return str(error)
-    return str(_refuse(f"this use of {function.name}"))
 
 
 def _refuse(what: str) -> py.Value:
@@ -206,7 +191,7 @@ _HOLDING: dict[str, Callable[..., Any]] = {
     "reversed": lambda value: py.Items(reversed(_sized(value))),
     "bool": lambda *args: truth(*args) if args else False,
     "iter": lambda value: py.Items(iterate(value)),
-    "enumerate": lambda value, start=0: py.Items(enumerate(iterate(value), known(start))),
+    "enumerate": lambda iterable, start=0: py.Items(enumerate(iterate(iterable), known(start))),
     "zip": lambda *values: py.Items(zip(*map(iterate, values), strict=False)),
     "any": lambda items: any(map(truth, iterate(items))),
     "all": lambda items: all(map(truth, iterate(items))),
@@ -242,7 +227,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
 }
 BUILTINS: Mapping[str, py.PlainFunction] = {
     **{
-        name: py.PlainFunction(name, function, kind, getattr(builtins, name))
+        name: py.PlainFunction(name, function, kind)
         for kind, table in (("plain", _FUNCTIONS), ("holds", _HOLDING), ("applies", _APPLYING))
         for name, function in table.items()
     },

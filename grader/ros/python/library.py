@@ -169,12 +169,12 @@ def _in_python(releases: tuple[Release, ...]) -> str:
 def attribute_error(module: str, name: str, releases: tuple[Release, ...] = ()) -> str | None:
     """Return what is wrong with `module.name`; None where it works or this is unknown."""
     names = python_names(module, releases)
-    guess = did_you_mean(name, sorted(names))
-    if name in python_names(module, RELEASES):
-        guess = _in_python(releases)
-    is_module = f"{module}.{name}" in python_names(MODULES, releases)
-    if not names or name in names or name.startswith("_") or is_module:
+    if not names or name in names or name.startswith("_"):
         return None
+    if f"{module}.{name}" in python_names(MODULES, releases):
+        return None
+    is_other = name in python_names(module, RELEASES)
+    guess = _in_python(releases) if is_other else did_you_mean(name, sorted(names))
     return f"{module} has no {name!r}{guess}"
 
 

@@ -72,7 +72,7 @@ def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | Non
             )
         return call_plain(run, owner, *args, **kwargs)
 
-    return py.PlainFunction(name, charged, kind, getattr(owner, name))
+    return py.PlainFunction(name, charged, kind)
 
 
 def _search_cost(text: py.Value, part: py.Value) -> int:

@@ -22,23 +22,22 @@ _SLOW_ENCODINGS = (
     "idna",
     "punycode",
 )  # encodings of domain names; their time grows with the square of the length
+_JAZZY = 12  # the minor version of Python of ROS 2 Jazzy
 # What a minor version of Python added, as it stands in a line: PEP 758 and 750, 696, 695, 701. A
 # brace of an f-string that is open at its quote, at a backslash or at the end of the line is one of
-# PEP 701. `feature_version` tells for older ones.
+# PEP 701. `feature_version` tells for older ones. Few files need the patterns: they are no objects.
 _F_STRINGS = (
     12,
-    re.compile(
-        r"""\b[rR]?[fF][rR]?(['"])(?:(?!\1).)*?(?<!\{)\{(?:(?!\1)[^\\{}])*(?:\1(?=.*\})|\\|$)"""
-    ),
+    r"""\b[rR]?[fF][rR]?(['"])(?:(?!\1).)*?(?<!\{)\{(?:(?!\1)[^\\{}])*(?:\1(?=.*\})|\\|$)""",
 )
 _ADDED = (
-    (14, re.compile(r"""^\s*except\*?\s+[\w.]+\s*,|(?<![\w'"])[rR]?[tT][rR]?['"]""")),
-    (13, re.compile(r"^\s*(?:type|(?:async\s+)?def|class)\s+\w+\s*\[[^\]]*=")),
-    (12, re.compile(r"^\s*(?:type\s+\w+\s*[=\[]|(?:(?:async\s+)?def|class)\s+\w+\s*\[)")),
+    (14, r"""^\s*except\*?\s+[\w.]+\s*,|(?<![\w'"])[rR]?[tT][rR]?['"]"""),
+    (13, r"^\s*(?:type|(?:async\s+)?def|class)\s+\w+\s*\[[^\]]*="),
+    (12, r"^\s*(?:type\s+\w+\s*[=\[]|(?:(?:async\s+)?def|class)\s+\w+\s*\[)"),
     _F_STRINGS,
 )
 # In it, versions of Python name other places and say other things.
-_F_STRING = re.compile(r"""\b[rR]?[fF][rR]?(['"])(?:.*?\1)?""")
+_F_STRING = r"""\b[rR]?[fF][rR]?(['"])(?:.*?\1)?"""
 _MAX_SEARCHED = 1_000  # characters of a line
 _FUNCTIONS = ("def ", "lambda", "for ")  # what has code of its own; a comprehension has
 _MAX_FUNCTIONS = 2_000  # of a file that is compiled
@@ -178,8 +177,7 @@ def _parse(data: bytes, path: str, releases: tuple[Release, ...]) -> Code | Synt
             return _newer_syntax(source, lines, minor, [_F_STRINGS]) or code
     except SyntaxError as error:
         line = max(error.lineno or 1, 1)
-        reason, column = _described(error, source.line(line))
-        message = _message_of(reason, column, source.line(line))
+        reason, message, column = _described(error, source.line(line))
         # Python 3.14 refuses an except for its version at the end of the statement.
         above = range(line, 0 if "only supported in Python" in error.msg else line - 2, -1)
         return _newer_syntax(source, above, minor) or SyntaxFault(
@@ -193,7 +191,7 @@ def _newer_syntax(
     source: Source,
     lines: Iterable[int],
     minor: int,
-    added: Iterable[tuple[int, re.Pattern[str]]] = _ADDED,
+    added: Iterable[tuple[int, str]] = _ADDED,
 ) -> SyntaxFault | None:
     """Return that one of some lines needs a newer version of Python than reads the file.
 
@@ -204,7 +202,7 @@ def _newer_syntax(
     for line in filter(None, lines):
         text = source.line(line)[:_MAX_SEARCHED].rstrip()
         for needed, pattern in added:
-            if needed > min(minor, running) and pattern.search(text):
+            if needed > min(minor, running) and re.search(pattern, text):
                 other = f"Python 3.{running} runs the grader"
                 if needed > minor:
                     other = f"the release has Python 3.{minor}"
@@ -213,50 +211,48 @@ def _newer_syntax(
     return None
 
 
-def _described(error: SyntaxError, line: str) -> tuple[str, int]:
-    """Return what is wrong in a line, and in which column, as each version of Python says it.
+def _described(error: SyntaxError, line: str) -> tuple[str, str, int]:
+    """Return what is wrong in a line, as each version of Python says it.
 
-    The versions name other places in f-strings.
+    This is the reason, the message, which has the word or character where the reason says no more
+    than a place, and the column. The versions name other places in f-strings.
     """
-    line, column = line[:_MAX_SEARCHED], max(error.offset or 1, 1)
-    spans = [match.span() for match in _F_STRING.finditer(line)]
+    column, line = max(error.offset or 1, 1), line[:_MAX_SEARCHED]
+    spans = [match.span() for match in re.finditer(_F_STRING, line)]
     is_inside = any(start + 1 < column <= end for start, end in spans)
     is_of_f_string = error.msg.startswith("f-string") or (error.text or line).rstrip("\n") != line
     if spans and (is_inside or is_of_f_string):
-        return "invalid f-string", spans[0][0] + 1
+        return "invalid f-string", "invalid f-string", spans[0][0] + 1
     if error.msg.startswith("expected argument value"):
-        column = error.end_offset or 1
-        column += len(line[column - 1 :]) - len(line[column - 1 :].lstrip())
-    return shared_message(error.msg), column
+        rest = line[(error.end_offset or 1) - 1 :].lstrip()
+        column = len(line) - len(rest) + 1
+    reason = message = shared_message(error.msg)
+    token = re.match(r"\w{1,30}|\S", line[column - 1 :])
+    if reason == "invalid syntax" and token is not None:
+        message = f"{reason} at {token[0]!r}"
+    return reason, message, column
 
 
-def _message_of(reason: str, column: int, line: str) -> str:
-    """Return the message, with the word or character where it says no more than a place."""
-    token = re.compile(r"\w{1,30}|\S").match(line, column - 1)
-    if reason != "invalid syntax" or token is None:
-        return reason
-    return f"{reason} at {token[0]!r}"
-
-
-def parse_expression(text: str) -> ast.expr | str | None:
-    """Return an expression, or Python's message on why it is none.
-
-    Returns None if it is nested too deeply.
-    """
+def parse_expression(text: str) -> ast.expr | SyntaxFault:
+    """Return an expression as the Python of ROS 2 Jazzy reads it, or why it does not."""
+    source, at = Source("", text), Location("", 1, 1)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return ast.parse(text, mode="eval").body
+            return ast.parse(text, mode="eval", feature_version=(3, _JAZZY)).body
     except SyntaxError as error:
-        return f"SyntaxError: {_message_of(*_described(error, text), text)}"
+        _, message, _ = _described(error, text)
+        # No line follows in which an f-string may go on.
+        newer = _newer_syntax(Source("", text + "}"), (1,), _JAZZY)
+        return newer or SyntaxFault(source, f"SyntaxError: {message}", at)
     except (
         RecursionError,
         MemoryError,
         SystemError,
     ):  # how deep differs between versions; CPython 3.11 may miscount
-        return None
+        return SyntaxFault(source, "the expression is nested too deeply", at, is_certain=False)
     except (ValueError, OverflowError) as error:
-        return f"{type(error).__name__}: {error}"
+        return SyntaxFault(source, f"{type(error).__name__}: {error}", at)
 
 
 def own_nodes(node: ast.AST) -> list[ast.AST]:

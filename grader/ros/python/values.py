@@ -290,19 +290,13 @@ class PlainFunction:
     `kind` is "plain" for one whose arguments are wholly known; "holds" for one that only passes on
     what a list contains, known or not; "applies" for such a one that calls functions, by the one
     that it is given first; "path" for one whose result may begin with the stand-in of a folder,
-    "text" for one that may contain it. `own` is Python's own function, where `run` stands for one.
+    "text" for one that may contain it.
     """
 
-    __slots__ = ("kind", "name", "own", "run")
+    __slots__ = ("kind", "name", "run")
 
-    def __init__(
-        self,
-        name: str,
-        run: Callable[..., Value],
-        kind: str = "plain",
-        bound: Callable[..., Value] | None = None,
-    ) -> None:
-        self.name, self.run, self.kind, self.own = name, run, kind, bound
+    def __init__(self, name: str, run: Callable[..., Value], kind: str = "plain") -> None:
+        self.name, self.run, self.kind = name, run, kind
 
 
 # The functions that are evaluated, by their full names; each of the second kind takes the
