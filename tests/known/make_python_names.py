@@ -13,7 +13,7 @@ from pathlib import Path
 
 import tomli
 
-from grader.ros.known.python_names import PYTHON_NAMES_FILE
+from grader.ros.known.python_names import PYTHON_NAMES_FILE, python_names
 
 # Modules whose names launch files and setup.py import.
 LISTED = [
@@ -106,6 +106,7 @@ def write_names(interpreters: Sequence[Sequence[str]]) -> str:
         key: asked[key].intersection(*(names[key] for names in by_version.values()))
         for key in asked
     }
+    always["setuptools"] = python_names("setuptools")  # which is of no version
     lines = [head.rstrip(), "", *_table("always", always)]
     for version, names in by_version.items():
         more = {key: value - always[key] for key, value in names.items()}

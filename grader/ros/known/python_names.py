@@ -23,10 +23,10 @@ def _tables() -> Any:
     return tomli.loads(PYTHON_NAMES_FILE.read_text("utf-8"))
 
 
-def python_versions(releases: Collection[Release]) -> list[int]:
-    """Return the minor versions of Python that releases run with; without any, that of Jazzy."""
+def python_version(releases: Collection[Release]) -> int:
+    """Return the newest minor version of Python of some releases; without any, that of Jazzy."""
     versions = _tables()["python"]
-    return [int(versions[release].removeprefix("3.")) for release in releases or _DEFAULT]
+    return max(int(versions[release].removeprefix("3.")) for release in releases or _DEFAULT)
 
 
 @cache
@@ -37,7 +37,7 @@ def python_names(key: str, releases: tuple[Release, ...] = ()) -> frozenset[str]
     (True, False)
     """
     tables = _tables()
-    names = {*tables["always"].get(key, "").split(), *tables["besides"].get(key, "").split()}
+    names = set(tables["always"].get(key, "").split())
     for release in releases or _DEFAULT:
         names.update(tables[tables["python"][release]].get(key, "").split())
     return frozenset(names)

@@ -13,7 +13,6 @@ from grader.ros.python.parse import Code, location_in, position_of
 from grader.ros.python.walking import walk
 
 _FUNCTION = "generate_launch_description"
-_OF_MODULES = ("__file__", "__name__", "__doc__")
 
 
 def launch_slips(code: Code) -> list[Slip]:
@@ -102,7 +101,7 @@ class _LaunchNames:
         """Yield the names that are used and not defined."""
         if "*" in self._bound:
             return
-        defined = {*self._bound, *_OF_MODULES, *python_names("builtins", self._code.releases)}
+        defined = {*self._bound, "__file__", *python_names("builtins", self._code.releases)}
         for node in self._nodes:
             if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Load):
                 continue

@@ -153,7 +153,7 @@ class Constants(Interpreter):
 
     def _constant_name(self, node: ast.Name, scope: Scope) -> Value:
         value: Value = Unknown("it is not a constant", position_of(node))
-        if node.id in python_names("builtins", RELEASES):
+        if node.id in python_names("builtins"):
             value = self._builtin(node.id)
         return constant_in(scope, node.id, value)
 

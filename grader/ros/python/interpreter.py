@@ -50,6 +50,8 @@ _IN_ANNOTATIONS = (
     ast.expr_context,
     ast.Index,
 )
+# What builtins has in every version of Python: classes of errors, and others.
+_BUILT_IN = {name: getattr(builtins, name) for name in python_names("builtins", RELEASES[:1])}
 
 
 class _ReturnFlow(py.EvaluationSignal):
@@ -86,17 +88,11 @@ def _catches(kind: ast.expr | None, raised: py.EvaluationFails, at: Position) ->
     name = kind.id if isinstance(kind, ast.Name) else ""
     if kind is None or name == "BaseException" or (raised.kind is None and name == "Exception"):
         return True
-    caught = _exception(name)
+    caught = _BUILT_IN.get(name)
     if raised.kind is None or not isinstance(caught, type):
         message = "which error is raised in this try is not evaluated"
         raise py.Undetermined(message, at, is_final=True)
     return issubclass(raised.kind, caught)
-
-
-def _exception(name: str) -> object:
-    """Return a built-in class of errors that every version of Python has."""
-    is_old = name in python_names("builtins", RELEASES[:1])
-    return getattr(builtins, name) if is_old else None
 
 
 def _full_name(node: ast.expr) -> str:
@@ -451,7 +447,7 @@ class Interpreter(Evaluation):
 
     def _raise(self, node: ast.Raise, _: py.Scope) -> None:
         raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
-        kind = _exception(raised.id) if isinstance(raised, ast.Name) else None
+        kind = _BUILT_IN.get(raised.id) if isinstance(raised, ast.Name) else None
         if isinstance(kind, type) and issubclass(kind, Exception):
             self.error(f"the file raises {kind.__name__} here", self.at, kind)
         raise py.Undetermined("which error is raised here is not evaluated", self.at, is_final=True)
@@ -495,9 +491,8 @@ class Interpreter(Evaluation):
             self.error(message, position_of(node))
             return owner
         module, full = owner.name, f"{owner.name}.{node.attr}"
-        error = None
-        if full not in self.functions:
-            error = attribute_error(module, node.attr, self.releases)
+        is_evaluated = full in self.functions
+        error = None if is_evaluated else attribute_error(module, node.attr, self.releases)
         if error is not None:
             known = [
                 function for function in self.functions if function.rpartition(".")[0] == module

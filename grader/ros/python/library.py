@@ -14,7 +14,7 @@ from itertools import chain
 from pathlib import PurePosixPath
 
 from grader.base.names import closest, did_you_mean
-from grader.ros.known.python_names import MODULES, python_names, python_versions
+from grader.ros.known.python_names import MODULES, python_names, python_version
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.python import values as py
 from grader.ros.python.values import iterate
@@ -163,7 +163,7 @@ def _import_error(module: str, name: str, releases: tuple[Release, ...]) -> str 
 
 
 def _in_python(releases: tuple[Release, ...]) -> str:
-    return f" in Python 3.{max(python_versions(releases))}"
+    return f" in Python 3.{python_version(releases)}"
 
 
 def attribute_error(module: str, name: str, releases: tuple[Release, ...] = ()) -> str | None:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.reuse import reuse
 from grader.base.source import Location, Source
-from grader.ros.known.python_names import python_versions, shared_message
+from grader.ros.known.python_names import python_version, shared_message
 from grader.ros.known.releases import Release
 from grader.ros.python.walking import children, walk
 
@@ -152,7 +152,7 @@ def _parse(data: bytes, path: str, releases: tuple[Release, ...]) -> Code | Synt
     if isinstance(source, SyntaxFault):
         return source
     text = source.text
-    minor = max(python_versions(releases))
+    minor = python_version(releases)
     # Python 3.14 does not tell with parentheses, which Python 3.9 added, by feature_version.
     features = (3, max(minor, 9))
     try:

@@ -67,8 +67,6 @@ _CERTAIN = frozenset(
         "PercentFormatExpectedSequence",
     }
 )
-# What pyflakes takes for defined besides the names of builtins.
-_OF_MODULES = ("__file__", "__builtins__", "__annotations__", "WindowsError")
 _INTERFACE = re.compile(r"\w+\.(?:msg|srv|action)\.[A-Z]\w*+")
 _SPINNING = "rclpy.spin_until_future_complete"
 # Names of groups and executors with which a callback may wait for another one.
@@ -272,8 +270,9 @@ def _undefined_names(code: Code) -> Iterator[CodeFault]:
     if binds_unseen(every_node(code.tree)):
         return
     try:
-        names = python_names("builtins", code.releases)
-        checker = ReleaseChecker(code.tree, builtins=[*names, *_OF_MODULES])
+        names = {*python_names("builtins", code.releases), "WindowsError"}
+        names |= {"__file__", "__builtins__", "__annotations__"}  # which each module has
+        checker = ReleaseChecker(code.tree, builtins=names)
     except RecursionError:
         return
     unevaluated = _unevaluated(code.tree)

@@ -30,7 +30,6 @@ from grader.ros.python.parse import Code, Position, location_in, position_of
 from grader.ros.python.walking import children, walk
 
 _MAX_NAMES = 20  # that are not defined
-_OF_MODULES = ("__file__", "__name__", "__doc__", "__spec__")
 # Modules that students forget to import, and names in modules.
 _MODULES = ("rclpy", "math", "time", "os", "sys", "random")
 _IMPORTED = {"Node": "rclpy.node"}
@@ -85,7 +84,7 @@ class _NodeSlips:
         for node in nodes:
             self._bind(node)
         self._known = {*self._bound, *self._imports}
-        self._global = {*_OF_MODULES, *python_names("builtins", tuple(releases))}
+        self._global = {"__file__", *python_names("builtins", tuple(releases))}
         self._functions = {
             node.name: node for node in code.tree.body if isinstance(node, ast.FunctionDef)
         }
