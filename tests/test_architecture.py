@@ -42,7 +42,8 @@ ROOMS = {
         "ignore_comments slips",
     ),
     "ros": (
-        "known python xml",
+        "known",
+        "python xml",
         "xacro urdf installation mesh interfaces cpp",
         "slips",
         "config",

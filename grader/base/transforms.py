@@ -4,7 +4,7 @@ At 4 x 4 a product of Python floats costs no more than a numpy call, and saves t
 `numpy.asarray(transform)` gives the homogeneous matrix.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import acos, atan2, cos, degrees, hypot, inf, nan, sin
 from typing import TYPE_CHECKING, Any
@@ -179,9 +179,29 @@ def rotation_about(axis: Vector, angle: float) -> Rotation:
     )
 
 
+def add_up(numbers: Iterable[float]) -> float:
+    """Return the sum of numbers, added one by one.
+
+    sum() corrects rounding errors from Python 3.12 on, so that its result depends on the version.
+    """
+    total = 0.0
+    for number in numbers:
+        total += number
+    return total
+
+
+def middle_of(weighted: Sequence[tuple[float, Vector]]) -> Vector:
+    """Return the mean of points, each with its weight."""
+    total = add_up(weight for weight, _ in weighted)
+    x, y, z = (
+        add_up(weight * point[axis] for weight, point in weighted) / total for axis in range(3)
+    )
+    return (x, y, z)
+
+
 def turn_between(one: Rotation, other: Rotation) -> float:
     """Return the angle in degrees of the rotation from one to the other."""
-    trace = sum(
+    trace = add_up(
         a * b for a, b in zip(one, other, strict=True)
     )  # of that rotation: 1 + 2 cos(angle)
     return degrees(acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0))))

@@ -78,7 +78,7 @@ def test_programs_are_like_others_of_their_package() -> None:
 def test_each_file_of_no_package_is_read() -> None:
     """Each key of the other files is a field of the row that they are read into."""
     names = {path.stem for path in FOLDER.parent.glob("*.toml")}
-    assert names == {*_OTHERS, "releases", "index", "tables", "outputs"}
+    assert names == {*_OTHERS, "releases", "index", "tables", "outputs", "python_names"}
     for kind, read in _OTHERS.values():
         assert isinstance(read(), kind)  # type: ignore[arg-type]  # a function that makes rows
 

@@ -4,9 +4,11 @@ The library evaluates Python expressions, so it is given our own documents only.
 """
 
 import io
+import sys
 import warnings
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from contextlib import contextmanager, nullcontext, redirect_stderr, redirect_stdout
+from math import fsum, isfinite
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
@@ -71,11 +73,23 @@ def _process(folder: Path, document: Document) -> tuple[str, bool]:
     return text, bool(errors.getvalue())
 
 
+def _compensated_sum(values: Any, start: Any = 0, add: Any = sum) -> Any:
+    """Return what sum() returns from Python 3.12 on, which Jazzy has."""
+    items = [start, *values]
+    is_finite = all(isinstance(item, int | float) and isfinite(item) for item in items)
+    if is_finite and any(isinstance(item, float) for item in items):
+        return fsum(items)
+    return add(items[1:], start)
+
+
 @contextmanager
 def _fresh(xacro: Any) -> Iterator[None]:
     """Give xacro the state and the environment of a new process: expressions can change its namespace."""
+    compensated = mock.patch("builtins.sum", _compensated_sum)
+    with compensated if sys.version_info < (3, 12) else nullcontext():
+        symbols = xacro.create_global_symbols()
     state = {
-        "_global_symbols": xacro.create_global_symbols(),
+        "_global_symbols": symbols,
         "all_includes": [],
         "substitution_args_context": {},
     }

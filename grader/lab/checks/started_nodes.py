@@ -285,9 +285,10 @@ def fault_of_syntax(workspace: "Workspace", node: "StartedNode", package: str) -
     """Return why Python cannot read the program of a node of a package; None if it can."""
     code = workspace.code.by_package.get(package)
     for program in code.programs if code is not None else ():
-        if program.name == node.executable and program.syntax is not None:
-            message = f"Python cannot read the file: {program.syntax.message}"
-            return Fault(message, program.syntax.location)
+        syntax = program.syntax if program.name == node.executable else None
+        if syntax is not None and syntax.is_certain:
+            message = f"Python cannot read the file: {syntax.message}"
+            return Fault(message, syntax.location)
     return None
 
 

@@ -5,7 +5,6 @@ name no file, names that are undefined, and words that are misspelt.
 """
 
 import ast
-import builtins
 import posixpath
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -308,7 +307,7 @@ def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
         start = file.source.offset(file.fault.location.line, 1)
         end = start + len(file.text[start:].partition("\n")[0].rstrip())
         yield change([file.source.edit(end, end, ",")], "a missing comma", what)
-    undefined = sorted(file.used - file.bound - {*dir(builtins)})
+    undefined = sorted(file.undefined)
     imported = in_backticks(name for name in undefined if name in USUAL_NAMES)
     yield change(file.with_imports(sorted(file.used)), f"the import of {imported}", what)
     yield from _meant_names(file, what)
@@ -323,7 +322,7 @@ def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
 def _meant_names(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that write the most similar names that have values for undefined ones."""
     names = [node for node in file.nodes if isinstance(node, ast.Name)]
-    undefined = file.used - file.bound - {*dir(builtins), *USUAL_NAMES}
+    undefined = file.undefined - {*USUAL_NAMES}
     for word in sorted(undefined)[:_MAX_WORDS]:
         uses = [node for node in names if node.id == word]
 

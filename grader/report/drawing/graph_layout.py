@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from grader.base.transforms import add_up
+
 _LETTER, _LINE = 7.2, 18  # width and height of a letter, in units of the drawing
 _PADDING, _GAP, _BETWEEN = 12, 14, 70  # inside of a box, below it, and between layers
 _MIN_WIDTH, _MAX_LETTERS = 60, 44
@@ -65,7 +67,7 @@ def _place_layers(
     boxes: dict[str, DrawnBox] = {}
     heights: list[float] = []
     for names in order:
-        heights.append(sum(sized[name].height + _GAP for name in names))
+        heights.append(add_up(sized[name].height + _GAP for name in names))
     height = max(heights, default=0.0)
     x = 0.0
     for names, own_height in zip(order, heights, strict=True):
@@ -152,7 +154,7 @@ def _with_few_crossings(
             middles: dict[str, float] = {}
             for name in names:
                 others = neighbours[name]
-                middles[name] = sum(places[other] for other in others) / len(others)
+                middles[name] = add_up(places[other] for other in others) / len(others)
             names.sort(key=middles.__getitem__)
             places.update(_places_in([names]))
     return order

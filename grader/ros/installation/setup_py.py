@@ -29,6 +29,7 @@ from grader.ros.installation.installation import (
     InstalledFile,
     InstallError,
 )
+from grader.ros.known.releases import Release
 from grader.ros.python.budget import Budget
 from grader.ros.python.evaluation import Evaluation, PythonError
 from grader.ros.python.interpreter import Interpreter
@@ -177,16 +178,22 @@ _MAX_SETTINGS = 64 * 1024  # bytes
 _Finding = str | Unknown
 
 
-def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None) -> Installation:
+def read_setup(
+    data: bytes,
+    path: str,
+    tree: Tree,
+    budget: Budget | None = None,
+    releases: tuple[Release, ...] = (),
+) -> Installation:
     """Evaluate the setup.py of a package with these files; its work is charged to the budget.
 
-    Never raises.
+    Python is that of the releases. Never raises.
 
     The file system lists a folder in any order. If there are several files, other orders are
     evaluated as well. colcon runs the file twice, with __file__ as "setup.py" and as an absolute
     path. What differs between these is unknown.
     """
-    code = parse(data, path)
+    code = parse(data, path, releases)
     if isinstance(code, SyntaxFault):
         return Installation(code.source, code)
     budget = budget or Budget()

@@ -19,6 +19,7 @@ from grader.base.reuse import Answers, Memory
 from grader.base.source import Location, Source
 from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.installation.places import HOME, PREFIX, SHARE, WORKING_FOLDER
+from grader.ros.known.releases import Release
 from grader.ros.launch.actions import ActionVisitor, Include, NotIncluded
 from grader.ros.launch.call_arguments import LaunchFunctions, join_path, kind_of
 from grader.ros.launch.launch_classes import (
@@ -117,6 +118,7 @@ def read_launch(
     arguments: Mapping[str, str] = _NO_ARGUMENTS,
     memory: Memory | None = None,
     work: Budget | None = None,
+    releases: tuple[Release, ...] = (),
 ) -> Launch:
     """Read a launch file and evaluate it. Never raises.
 
@@ -128,6 +130,7 @@ def read_launch(
         arguments: The launch arguments that it is given.
         memory: The launch files that were read before.
         work: The budget of all files of the workspace.
+        releases: The releases whose Python reads it; none: that of Jazzy.
     """
     work = work or Budget()
 
@@ -138,10 +141,11 @@ def read_launch(
             dict(arguments),
             given=frozenset(arguments),
             budget=Budget(MAX_STEPS, whole=work),
+            releases=releases,
         )
         return _LaunchReader().read(data, path, installed, context)
 
-    key = (data, path, installed, tuple(arguments.items()))
+    key = (data, path, installed, tuple(arguments.items()), releases)
     return (memory or Memory()).recall(key, machine, work, read)
 
 
@@ -226,12 +230,12 @@ def _read_entities(
 def _read_python(
     data: bytes, path: str, installed: str, context: Context, include: Include
 ) -> Launch:
-    code = parse(data, path)
+    code = parse(data, path, context.releases)
     if isinstance(code, SyntaxFault):
-        syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
         if code.is_certain:
+            syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
             return Launch(code.source, syntax)
-        return Launch(code.source, unknown=(syntax,), doubts=(syntax,))
+        return Launch(code.source, unread=code.message)
     findings = Findings(lambda position: location_in(code.source, position))
     file = _PythonLaunchFile(context)
     entry = file.run(code, installed).get(_ENTRY)

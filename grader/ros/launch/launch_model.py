@@ -140,6 +140,7 @@ class Context:
     budget: Budget = field(
         default_factory=partial(Budget, MAX_STEPS)
     )  # of all files that are launched
+    releases: tuple[Release, ...] = ()  # whose Python reads the files; none: that of Jazzy
 
     def copy(self) -> "Context":
         """Return a context whose launch configurations change on their own."""

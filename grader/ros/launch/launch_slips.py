@@ -1,19 +1,18 @@
 """The slips in the names of a Python launch file: what it imports, calls and defines."""
 
 import ast
-import builtins
 from collections.abc import Collection, Iterator, Mapping
 
 from grader.base.names import closest, near
 from grader.base.slips import Slip
 from grader.ros.known.package_files import packages_with_files
 from grader.ros.known.package_rows import lacks_program, package_row, programs_of
+from grader.ros.known.python_names import python_names
 from grader.ros.launch.launch_classes import class_named, exports
 from grader.ros.python.parse import Code, location_in, position_of
 from grader.ros.python.walking import walk
 
 _FUNCTION = "generate_launch_description"
-_GLOBAL = frozenset({*dir(builtins), "__file__", "__name__", "__doc__"})
 
 
 def launch_slips(code: Code) -> list[Slip]:
@@ -102,11 +101,12 @@ class _LaunchNames:
         """Yield the names that are used and not defined."""
         if "*" in self._bound:
             return
+        defined = {*self._bound, "__file__", *python_names("builtins", self._code.releases)}
         for node in self._nodes:
             if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Load):
                 continue
             name = node.id
-            if name in self._bound or name in _GLOBAL:
+            if name in defined:
                 continue
             meant = self._renamed.get(name) or _surely(name, self._bound)
             if meant is not None:

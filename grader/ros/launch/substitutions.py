@@ -1,6 +1,5 @@
 """The texts of substitutions, as launch evaluates them, and the files that their commands print."""
 
-import builtins
 import posixpath
 import re
 import shlex
@@ -14,6 +13,8 @@ from grader.base.text import enumerated
 from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.installation.places import HOME, PREFIX, SHARE
 from grader.ros.known.package_rows import package_row, programs_of
+from grader.ros.known.python_names import python_names
+from grader.ros.known.releases import RELEASES
 from grader.ros.launch.launch_model import Contents, Context, FileText, Resolved
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.builtins import BUILTINS, MATH
@@ -401,7 +402,7 @@ def _find_name(name: str) -> Value:
         return MATH.get(name, BUILTINS.get(name))
     if name == "math":
         return Namespace("math", MATH.__getitem__)
-    if hasattr(builtins, name) or name.startswith("__"):
+    if name in python_names("builtins", RELEASES) or name.startswith("__"):
         raise Undetermined(f"the name {name!r} is not evaluated")
     raise EvaluationFails(f"the name {name!r} is not defined")
 

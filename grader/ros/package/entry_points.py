@@ -5,7 +5,6 @@ They are the programs of a Python package.
 
 import ast
 import re
-import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
@@ -16,6 +15,7 @@ from grader.base.text import (
     MAX_NAMED,
     enumerated,
 )
+from grader.ros.known.python_names import MODULES, python_names
 from grader.ros.known.released import is_released
 from grader.ros.known.rosdep_words import rosdep_words
 from grader.ros.launch.launch_model import StartedNode
@@ -207,15 +207,15 @@ def _entries_by_name(package: Package) -> Mapping[str, Sequence[_EntryPoint]]:
 def read_module(package: Package, path: str) -> Code | None:
     """Return a parsed Python file of a package; None for one that is not read."""
     data = package.tree.read(path, PYTHON_LIMIT)
-    code = parse(data, package.path(path)) if data is not None else None
+    code = parse(data, package.path(path), package.releases) if data is not None else None
     return code if isinstance(code, Code) else None
 
 
 def unreadable_module(package: Package, path: str) -> SyntaxFault | None:
-    """Return why Python certainly cannot read a file of a package; None where it can, or may."""
+    """Return why Python cannot read a file of a package, certainly or in the version that runs."""
     data = package.tree.read(path, PYTHON_LIMIT)
-    fault = parse(data, package.path(path)) if data is not None else None
-    return fault if isinstance(fault, SyntaxFault) and fault.is_certain else None
+    fault = parse(data, package.path(path), package.releases) if data is not None else None
+    return fault if isinstance(fault, SyntaxFault) else None
 
 
 def module_path(package: Package, module: str) -> str | None:
@@ -297,7 +297,7 @@ def _may_be_elsewhere(package: Package, module: str) -> bool:
         return True
     if package.find(module) is not None or package.depends_on(module) or is_released(module):
         return True
-    return module in sys.stdlib_module_names or module in rosdep_words().modules
+    return module in python_names(MODULES, package.releases) or module in rosdep_words().modules
 
 
 def _imported_modules(code: Code, folder: str) -> Iterator[tuple[str, ast.stmt]]:

@@ -17,6 +17,7 @@ from grader.ros.installation.places import is_of_one_machine, one_machine_only
 from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import Launch, LaunchFault
 from grader.ros.package.package import MANIFEST, RESOURCE_INDEX, Package
+from grader.ros.python.parse import SyntaxFault
 
 _MAX_FILES = 5  # launch files, and RViz files
 _MAX_FILES_NAMED = 3  # in a message
@@ -54,6 +55,11 @@ def launch_problems(launch: Launch) -> list[Problem]:
     return sorted_problems(_launch_problems(launch))
 
 
+# Of a whole file: these are listed, where what is not known in a file is counted.
+_SETUP_UNREAD = kinds.SETUP_UNKNOWN._replace(severity="warning")
+_LAUNCH_UNREAD = kinds.LAUNCH_UNKNOWN._replace(severity="warning")
+
+
 def sorted_problems(problems: Iterable[Problem]) -> list[Problem]:
     """Return the problems of one file in the order of their places."""
     return sorted(
@@ -67,14 +73,18 @@ def sorted_problems(problems: Iterable[Problem]) -> list[Problem]:
     )
 
 
+def _syntax_problem(setup: Installation, fault: SyntaxFault) -> Problem:
+    """Return that a setup.py or CMakeLists.txt cannot be read."""
+    kind, text = kinds.SETUP_SYNTAX, setup.fault_text
+    if not fault.is_certain:
+        kind, text = _SETUP_UNREAD, f"{setup.file} is not read: {fault.message}"
+    fixes = NO_FIXES if setup.is_cmake else syntax_fixes(setup.source)
+    return Problem(kind, text, fault.location, fixes=fixes)
+
+
 def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
-    if fault := setup.fault:
-        kind = kinds.SETUP_SYNTAX if fault.is_certain else kinds.SETUP_UNKNOWN
-        text = (
-            setup.fault_text if fault.is_certain else f"{setup.file} is not read: {fault.message}"
-        )
-        fixes = NO_FIXES if setup.is_cmake else syntax_fixes(setup.source)
-        yield Problem(kind, text, fault.location, fixes=fixes)
+    if setup.fault is not None:
+        yield _syntax_problem(setup, setup.fault)
         return
     for error in setup.faults:
         yield Problem(kinds.SETUP_NAME, error.message, setup.location(error.at))
@@ -139,7 +149,7 @@ def _entry_problems(package: Package, setup: Installation, *, is_known: bool) ->
 def _launch_problems(launch: Launch) -> Iterator[Problem]:
     if launch.unread:
         message = f"the launch file is not read: {launch.unread}"
-        yield Problem(kinds.LAUNCH_UNKNOWN, message, Location(launch.source.path, 1, 1))
+        yield Problem(_LAUNCH_UNREAD, message, Location(launch.source.path, 1, 1))
     if launch.syntax is not None:
         yield launch_syntax(launch, launch.syntax)
     for fault in launch.faults:

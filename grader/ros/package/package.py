@@ -278,7 +278,7 @@ class Package:
             return setup.in_releases(self.releases)
         from grader.ros.installation.setup_py import read_setup
 
-        return read_setup(data, path, self.tree, self.budget)
+        return read_setup(data, path, self.tree, self.budget, self.releases)
 
     @cached_property
     def installed(self) -> dict[str, str]:
@@ -406,7 +406,14 @@ class Package:
                 data = self.tree.files[path].read(PYTHON_LIMIT)
             installed = self._installed_path(path)
             launch = read_launch(
-                data, full, installed, self, self.arguments, self.memory, self.work
+                data,
+                full,
+                installed,
+                self,
+                self.arguments,
+                self.memory,
+                self.work,
+                self.releases,
             )
         except InputError as error:
             launch = Launch(Source(full, ""), unread=str(error))

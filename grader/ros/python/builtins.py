@@ -1,12 +1,11 @@
 """Python's built-in functions and those of math, as an expression may call them."""
 
-import builtins
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
 from typing import Any
 
+from grader.ros.known.python_names import python_names
 from grader.ros.python import values as py
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import (
@@ -22,12 +21,31 @@ from grader.ros.python.values import (
 
 _MAX_DIGITS = 400  # that round leaves
 _OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keyword")
+# What takes the arguments that Python's own function takes, and no others.
+_SAME_ARGUMENTS = (
+    "list",
+    "tuple",
+    "len",
+    "reversed",
+    "enumerate",
+    "any",
+    "all",
+    "join",
+    "index",
+    "count",
+    "copy",
+    "get",
+    "replace",
+    "with_name",
+    "with_suffix",
+)
 _OF_ANY_LETTERS = ("bool", "print")  # whatever the letters of a text are
 _ABOVE = frozenset(  # what may be above a path
     {f"os.path.{name}" for name in ("dirname", "normpath", "abspath", "realpath")}
     | {"pathlib.Path.resolve", "pathlib.Path.absolute"}
 )
-_FAST_GROWING = ("factorial", "comb", "perm", "prod", "lcm")
+# Of math: what grows fast, and what is newer than the oldest Python that runs the grader.
+_NOT_EVALUATED = ("factorial", "comb", "perm", "prod", "lcm", "sumprod", "fma")
 
 # Calls a function value with arguments, for the functions that call others: map, filter, sorted.
 _Apply = Callable[[py.Value, list[py.Value]], py.Value]
@@ -55,12 +73,12 @@ def call(
     try:
         result = budget.checked(call_plain(function.run, *given, **kwargs), function.kind)
     except py.EvaluationFails as error:
-        if function.kind != "plain" and _OF_SIGNATURE.search(
-            str(error)
-        ):  # Python's own may take other arguments
-            wrong = _wrong_arguments(function, args, kwargs)
-            raise py.EvaluationFails(f"TypeError: {function.name}() {wrong}") from None
-        raise
+        if function.kind == "plain" or not _OF_SIGNATURE.search(str(error)):
+            raise
+        if function.name not in _SAME_ARGUMENTS:
+            _refuse(f"this use of {function.name}")
+        message = f"TypeError: {function.name}() takes other arguments"
+        raise py.EvaluationFails(message) from None
     if function.kind == "path" and (function.name in _ABOVE or str(result).startswith("..")):
         _require_below(result, args, budget)
     return result
@@ -69,23 +87,6 @@ def call(
 def _require_below(path: py.Value, given: list[py.Value], budget: Budget) -> None:
     if not all(budget.is_below(value, path) for value in given):
         raise py.Undetermined("what is above a folder that is not known is not known")
-
-
-def _wrong_arguments(
-    function: py.PlainFunction, args: list[py.Value], kwargs: dict[str, py.Value]
-) -> str:
-    """Return what is wrong with the arguments of Python's own function.
-
-    Raises Undetermined if that is not certain.
-    """
-    from inspect import signature  # late: it takes long to import
-
-    with suppress(ValueError):  # of a function whose signature is not known
-        try:
-            signature(function.own).bind(*args, **kwargs) if function.own is not None else None
-        except TypeError as error:
-            return str(error)
-    return str(_refuse(f"this use of {function.name}"))
 
 
 def _refuse(what: str) -> py.Value:
@@ -117,7 +118,13 @@ def _sum(values: py.Value, start: py.Value = 0) -> py.Value:
     items = items_of(values)
     if any(isinstance(item, list | tuple) for item in (start, *items)):
         _refuse("the sum of lists")
-    return sum(items, start)
+    total, lost = sum((), start), 0.0
+    for item in items:
+        before, total = total, total + item
+        if isinstance(before, float) and isinstance(item, float):
+            large, small = sorted((before, item), key=abs, reverse=True)
+            lost += large - total + small
+    return total + lost if lost and math.isfinite(lost) else total
 
 
 def _round(number: py.Value, ndigits: py.Value = None) -> py.Value:
@@ -193,7 +200,7 @@ _HOLDING: dict[str, Callable[..., Any]] = {
     "reversed": lambda value: py.Items(reversed(_sized(value))),
     "bool": lambda *args: truth(*args) if args else False,
     "iter": lambda value: py.Items(iterate(value)),
-    "enumerate": lambda value, start=0: py.Items(enumerate(iterate(value), known(start))),
+    "enumerate": lambda iterable, start=0: py.Items(enumerate(iterate(iterable), known(start))),
     "zip": lambda *values: py.Items(zip(*map(iterate, values), strict=False)),
     "any": lambda items: any(map(truth, iterate(items))),
     "all": lambda items: all(map(truth, iterate(items))),
@@ -229,17 +236,19 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
 }
 BUILTINS: Mapping[str, py.PlainFunction] = {
     **{
-        name: py.PlainFunction(name, function, kind, getattr(builtins, name))
+        name: py.PlainFunction(name, function, kind)
         for kind, table in (("plain", _FUNCTIONS), ("holds", _HOLDING), ("applies", _APPLYING))
         for name, function in table.items()
     },
     "str": py.PlainFunction("str", lambda *args: str_of(*args) if args else "", "text"),
 }
+
+
+def _math_value(name: str) -> py.Value:
+    value = _refuse_function(name) if name in _NOT_EVALUATED else getattr(math, name)
+    return py.PlainFunction(name, value) if callable(value) else value
+
+
 MATH: Mapping[str, py.Value] = {
-    **{name: getattr(math, name) for name in ("pi", "e", "tau", "inf", "nan")},
-    **{
-        name: py.PlainFunction(name, _refuse_function(name) if name in _FAST_GROWING else value)
-        for name, value in vars(math).items()
-        if callable(value) and not name.startswith("_")
-    },
+    name: _math_value(name) for name in sorted(python_names("math", ("jazzy", "lyrical")))
 }

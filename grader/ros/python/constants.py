@@ -4,12 +4,12 @@ These are the values of names that a scope binds once.
 """
 
 import ast
-import builtins
-import sys
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
+from grader.ros.known.python_names import MODULES, python_names
+from grader.ros.known.releases import RELEASES
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.interpreter import Interpreter
@@ -152,10 +152,10 @@ class Constants(Interpreter):
         return names
 
     def _constant_name(self, node: ast.Name, scope: Scope) -> Value:
-        unknown = Unknown("it is not a constant", position_of(node))
-        return constant_in(
-            scope, node.id, self._builtin(node.id) if hasattr(builtins, node.id) else unknown
-        )
+        value: Value = Unknown("it is not a constant", position_of(node))
+        if node.id in python_names("builtins"):
+            value = self._builtin(node.id)
+        return constant_in(scope, node.id, value)
 
     def _constant_attribute(self, node: ast.Attribute, scope: Scope) -> Value:
         constant = constant_in(scope, dotted(node), self)
@@ -211,7 +211,7 @@ def _replaces_names(node: ast.ImportFrom) -> bool:
     Those of messages and of Python itself do not.
     """
     *_, last = (node.module or "").split(".")
-    is_known = last in ("msg", "srv", "action") or last in sys.stdlib_module_names
+    is_known = last in ("msg", "srv", "action") or last in python_names(MODULES, RELEASES)
     return node.names[0].name == "*" and not is_known
 
 

@@ -4,18 +4,19 @@ These are calls of its own functions, of the table's, and of methods.
 """
 
 import ast
-import builtins
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from pathlib import PurePosixPath
 from typing import ClassVar, NamedTuple
 
 from grader.base.names import closest
+from grader.ros.known.python_names import python_names
+from grader.ros.known.releases import Release
 from grader.ros.python import values as py
 from grader.ros.python.budget import Budget
 from grader.ros.python.builtins import BUILTINS, call, truth
 from grader.ros.python.expressions import Expressions
-from grader.ros.python.library import PYTHON_3_12, USUAL_NAMES, usual_meaning
+from grader.ros.python.library import USUAL_NAMES, usual_meaning
 from grader.ros.python.operators import method, operate
 from grader.ros.python.parse import START, Position, position_of
 from grader.ros.python.values import call_plain, known, reason_of
@@ -57,7 +58,6 @@ _CHANGING_METHODS: Mapping[type, tuple[str, ...]] = {
     list: ("append", "extend", "insert", "sort", "reverse", "pop", "clear", "remove"),
     dict: ("update", "pop", "setdefault", "clear"),
 }
-_TEXT_METHODS = frozenset(name for name in dir(str) if not name.startswith("_"))
 
 
 class Evaluation(Expressions):
@@ -79,6 +79,7 @@ class Evaluation(Expressions):
         self.functions = functions
         self.exports: Mapping[str, Collection[str]] = {}
         self.local_modules: Collection[str] = ()
+        self.releases: tuple[Release, ...] = ()  # whose Python runs the file; none: that of Jazzy
         self.module = py.Scope({"__name__": "__main__", **names})
         self.errors: list[PythonError] = []
         self.calls: list[py.Call] = []  # what is recorded, in order
@@ -148,7 +149,7 @@ class Evaluation(Expressions):
             return scope.find(node.id)
         except KeyError:
             pass
-        if hasattr(builtins, node.id) and node.id not in PYTHON_3_12:
+        if node.id in python_names("builtins", self.releases):
             return self._builtin(node.id)
         if node.id.startswith("__"):
             raise py.Undetermined(f"the name {node.id!r} {NOT_EVALUATED}")
@@ -296,7 +297,9 @@ class Evaluation(Expressions):
         bound_method = method(owner, name, self.budget)
         if bound_method is not None:
             return self.call_value(bound_method, made)
-        if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.follows_error):
+        if isinstance(owner, py.Unknown) and (
+            owner.follows_error or name in python_names("class str", self.releases)
+        ):
             raise owner.as_signal(owner.at)
         raise py.Undetermined(
             f"the method {name} of this value {NOT_EVALUATED}", made.at, is_final=True

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 from grader.ros.python.budget import Budget
 from grader.ros.python.builtins import call, truth
 from grader.ros.python.operators import attribute, compare, operate, subscript
-from grader.ros.python.parse import parse_expression
+from grader.ros.python.parse import SyntaxFault, parse_expression
 from grader.ros.python.values import (
     EvaluationFails,
     Items,
@@ -41,10 +41,8 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
         raise Undetermined("the expression is too long")
     budget.charge(len(text))
     node = parse_expression(text) if len(text) > _MAX_KEPT else _kept(text)
-    if node is None:
-        raise Undetermined("the expression is nested too deeply")
-    if isinstance(node, str):
-        raise EvaluationFails(node)
+    if isinstance(node, SyntaxFault):
+        raise EvaluationFails(node.message) if node.is_certain else Undetermined(node.message)
     try:
         return Expressions(find, budget).value(node, Scope({}))
     except (RecursionError, MemoryError):

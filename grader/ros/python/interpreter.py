@@ -18,6 +18,8 @@ from pathlib import PurePosixPath
 from typing import Any, ClassVar
 
 from grader.base.names import closest
+from grader.ros.known.python_names import python_names
+from grader.ros.known.releases import RELEASES
 from grader.ros.python import values as py
 from grader.ros.python.budget import Budget
 from grader.ros.python.builtins import truth
@@ -48,6 +50,8 @@ _IN_ANNOTATIONS = (
     ast.expr_context,
     ast.Index,
 )
+# What builtins has in every version of Python: classes of errors, and others.
+_BUILT_IN = {name: getattr(builtins, name) for name in python_names("builtins", RELEASES[:1])}
 
 
 class _ReturnFlow(py.EvaluationSignal):
@@ -84,7 +88,7 @@ def _catches(kind: ast.expr | None, raised: py.EvaluationFails, at: Position) ->
     name = kind.id if isinstance(kind, ast.Name) else ""
     if kind is None or name == "BaseException" or (raised.kind is None and name == "Exception"):
         return True
-    caught = getattr(builtins, name, None)
+    caught = _BUILT_IN.get(name)
     if raised.kind is None or not isinstance(caught, type):
         message = "which error is raised in this try is not evaluated"
         raise py.Undetermined(message, at, is_final=True)
@@ -162,6 +166,7 @@ class Interpreter(Evaluation):
 
     def run(self, code: Code) -> py.Scope:
         """Evaluate a whole file and return the scope of its names. Never raises."""
+        self.releases = code.releases
         try:
             self._block(code.tree.body, self.module)
         except (py.EvaluationSignal, RecursionError) as error:
@@ -380,7 +385,7 @@ class Interpreter(Evaluation):
                     self.at,
                     is_final=True,
                 )
-            error = import_error(module, alias.name, self.exports)
+            error = import_error(module, alias.name, self.exports, self.releases)
             bound = imported_names(module, alias, self.exports)
             if isinstance(error, Uncertain):
                 reason = (
@@ -442,7 +447,7 @@ class Interpreter(Evaluation):
 
     def _raise(self, node: ast.Raise, _: py.Scope) -> None:
         raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
-        kind = getattr(builtins, raised.id, None) if isinstance(raised, ast.Name) else None
+        kind = _BUILT_IN.get(raised.id) if isinstance(raised, ast.Name) else None
         if isinstance(kind, type) and issubclass(kind, Exception):
             self.error(f"the file raises {kind.__name__} here", self.at, kind)
         raise py.Undetermined("which error is raised here is not evaluated", self.at, is_final=True)
@@ -458,7 +463,7 @@ class Interpreter(Evaluation):
                 return owner.find(name)
             case py.Unknown(is_text=False):
                 return owner.attribute(name, position_of(node))
-        if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
+        if isinstance(owner, py.PLAIN) and not has_attribute(owner, name, self.releases):
             raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
         return py.BoundMethod(owner, name, node)
 
@@ -486,7 +491,8 @@ class Interpreter(Evaluation):
             self.error(message, position_of(node))
             return owner
         module, full = owner.name, f"{owner.name}.{node.attr}"
-        error = attribute_error(module, node.attr) if full not in self.functions else None
+        is_evaluated = full in self.functions
+        error = None if is_evaluated else attribute_error(module, node.attr, self.releases)
         if error is not None:
             known = [
                 function for function in self.functions if function.rpartition(".")[0] == module

@@ -7,15 +7,15 @@ None of the functions reads a file.
 
 import ast
 import posixpath
-import sys
 from collections.abc import Callable, Collection, Mapping
 from enum import Enum
 from functools import cache, lru_cache
-from importlib import import_module
 from itertools import chain
 from pathlib import PurePosixPath
 
 from grader.base.names import closest, did_you_mean
+from grader.ros.known.python_names import MODULES, python_names, python_version
+from grader.ros.known.releases import RELEASES, Release
 from grader.ros.python import values as py
 from grader.ros.python.values import iterate
 
@@ -23,94 +23,7 @@ MAX_PATH = 4_096  # characters
 # stands for the name of the package's folder, which the workspace does not determine
 PACKAGE_FOLDER = "<package>"
 _OWN = ("dirname", "basename", "normpath", "split", "splitext", "isabs")
-_SETUPTOOLS_PUBLIC = (
-    "setup",
-    "find_packages",
-    "find_namespace_packages",
-    "Command",
-    "Distribution",
-    "Extension",
-)
-_SETUPTOOLS = frozenset(
-    {
-        "setup",
-        "find_packages",
-        "find_namespace_packages",
-        "Command",
-        "Distribution",
-        "Extension",
-        "Require",
-        "depends",
-        "dist",
-        "command",
-        "errors",
-        "extension",
-        "PackageFinder",
-        "PEP420PackageFinder",
-        "sic",
-        "SetuptoolsDeprecationWarning",
-        "build_meta",
-        "glob",
-        "msvc",
-        "monkey",
-        "namespaces",
-        "sandbox",
-        "unicode_utils",
-        "wheel",
-        "windows_support",
-        "version",
-        "archive_util",
-        "dep_util",
-        "discovery",
-        "config",
-        "installer",
-        "launch",
-        "logging",
-        "package_index",
-        "convert_path",
-        "findall",
-        "distutils",
-        "warnings",
-        "modified",
-    }
-)
-# Modules of the standard library that students' setup files import; their names are read from the
-# modules themselves.
-_INSPECTED = frozenset(
-    {
-        "os",
-        "os.path",
-        "glob",
-        "pathlib",
-        "sys",
-        "shutil",
-        "itertools",
-        "re",
-        "io",
-        "typing",
-        "datetime",
-        "collections",
-        "functools",
-        "json",
-        "math",
-        "platform",
-        "subprocess",
-        "time",
-        "random",
-        "tempfile",
-        "textwrap",
-        "warnings",
-        "contextlib",
-        "fnmatch",
-        "string",
-        "operator",
-        "configparser",
-        "codecs",
-        "logging",
-        "errno",
-        "stat",
-    }
-)
+_NOT_MISSPELT = ("psutil", "setuptools", "distutils")
 _INSTALLED_WITH_ROS = (
     "pkg_resources",
     "wheel",
@@ -125,18 +38,6 @@ _INSTALLED_WITH_ROS = (
     "osrf_pycommon",
     "rclpy",
 )
-# What Python 3.12 has no more, or an older one that runs the grader has not yet.
-_REMOVED = ("asynchat", "asyncore", "imp", "smtpd")
-_ADDED = {
-    "batched",
-    "override",
-    "TypeAliasType",
-    "isjunction",
-    "splitroot",
-    "sumprod",
-    "monitoring",
-}
-PYTHON_3_12 = ("PythonFinalizationError",)  # built-in names that only a newer Python has
 # The names of ROS 2's launch that files use most (ros2/launch and ros2/launch_ros, Jazzy), by their
 # modules.
 _LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
@@ -220,7 +121,10 @@ class Uncertain(Enum):
 
 
 def import_error(
-    module: str, name: str, exports: Mapping[str, Collection[str]]
+    module: str,
+    name: str,
+    exports: Mapping[str, Collection[str]],
+    releases: tuple[Release, ...] = (),
 ) -> str | Uncertain | None:
     """Return what is wrong with `import name` or `from module import name`; None where it works."""
     if module.startswith("."):
@@ -235,63 +139,43 @@ def import_error(
         return f"{module} has no {name!r}" + (
             f": import it from {homes[-1]}" if homes else did_you_mean(name, exports[module])
         )
-    return _import_error(module, name)
+    return _import_error(module, name, releases)
 
 
 @lru_cache(maxsize=256)
-def _import_error(module: str, name: str) -> str | Uncertain | None:
-    top = (module or name).split(".")[0]
-    if top in _REMOVED:
-        return f"there is no module {top!r} in Python 3.12"
-    if name != "*" and (module in _INSPECTED or module == "setuptools"):
-        return _missing_name(module, name)
-    if _is_there(top, module, name):
+def _import_error(module: str, name: str, releases: tuple[Release, ...]) -> str | Uncertain | None:
+    if name != "*" and module and python_names(module):
+        return attribute_error(module, name, releases)
+    full, modules = module or name, python_names(MODULES, releases)
+    top = full.split(".")[0]
+    is_there = top in _INSTALLED_WITH_ROS or full in ("setuptools", "distutils")
+    is_there |= f"{module}.{name}" in {*modules, "distutils.core.setup"}
+    if is_there or (full in modules and (not module or name == "*")):
         return None
-    guess = _misspelt_module(top)
-    if guess is None:
+    if top in modules or top in _NOT_MISSPELT:
+        return Uncertain.IMPORT
+    if top in python_names(MODULES, RELEASES):
+        return f"there is no module {top!r}{_in_python(releases)}"
+    guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
+    if not guess or top.startswith(guess):
         return Uncertain.IMPORT
     return f"there is no module {top!r}; did you mean {guess!r}?"
 
 
-def _is_there(top: str, module: str, name: str) -> bool:
-    """Return whether an import certainly finds its module; `top` is the first name of it."""
-    full = module or name
-    if top in _INSTALLED_WITH_ROS or full in ("setuptools", "distutils", *_INSPECTED):
-        return True
-    if (module, name) == ("distutils.core", "setup"):
-        return True
-    return top in sys.stdlib_module_names and full == top and not module
+def _in_python(releases: tuple[Release, ...]) -> str:
+    return f" in Python 3.{python_version(releases)}"
 
 
-def _misspelt_module(top: str) -> str | None:
-    """Return the common module that a name surely means; None for a name that may be right."""
-    if top in sys.stdlib_module_names or top in ("psutil", "setuptools"):
-        return None
-    guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
-    if not guess or top.startswith(guess):
-        return None
-    return guess
-
-
-def _missing_name(module: str, name: str) -> str | Uncertain | None:
-    if module == "setuptools":
-        missing, guess = name not in _SETUPTOOLS, did_you_mean(name, _SETUPTOOLS_PUBLIC[:3])
-    else:
-        imported = import_module(module)  # one of the few above, never a student's choice
-        missing, guess = not hasattr(imported, name), did_you_mean(name, dir(imported))
-    if name in _ADDED:
-        return Uncertain.IMPORT
-    if missing:
-        return f"{module} has no {name!r}{guess}"
-    return None
-
-
-def attribute_error(module: str, name: str) -> str | None:
+def attribute_error(module: str, name: str, releases: tuple[Release, ...] = ()) -> str | None:
     """Return what is wrong with `module.name`; None where it works or this is unknown."""
-    if module not in _INSPECTED and module != "setuptools":
+    names = python_names(module, releases)
+    if not names or name in names or name.startswith("_"):
         return None
-    error = _import_error(module, name)
-    return error if isinstance(error, str) else None
+    if f"{module}.{name}" in python_names(MODULES, releases):
+        return None
+    is_other = name in python_names(module, RELEASES)
+    guess = _in_python(releases) if is_other else did_you_mean(name, sorted(names))
+    return f"{module} has no {name!r}{guess}"
 
 
 def imported_names(

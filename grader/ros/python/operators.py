@@ -8,15 +8,16 @@ import operator
 import re
 from collections.abc import Callable, Mapping
 from io import StringIO
-from pathlib import PosixPath, PurePosixPath
+from pathlib import PurePosixPath
 
+from grader.ros.known.python_names import python_names
+from grader.ros.known.releases import Release
 from grader.ros.python import values as py
 from grader.ros.python.budget import CHARACTERS, Budget
 from grader.ros.python.values import call_plain, items_of, known, refuse, str_of, too_large
 
 _WIDE = re.compile(r"\*|\d{3}")
 _FIELD = re.compile(r"\{(?:\w*)\}")
-_PYTHON_3_12 = ("walk", "with_segments", "is_junction")  # what paths have since then
 _NUMBERS = (float, int)
 
 
@@ -28,7 +29,7 @@ def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
     if name.startswith("__"):
         raise py.EvaluationFails(f"names that begin with two underscores are not allowed: {name}")
     if isinstance(owner, py.Namespace):
-        if hasattr(dict, name):  # a namespace of xacro is a dict
+        if name in python_names("class dict"):  # a namespace of xacro is a dict
             raise py.Undetermined(f"the method {name} of a namespace is not supported")
         return owner.find(name)
     bound_method = method(owner, name, budget)
@@ -43,11 +44,11 @@ def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
     raise py.Undetermined(f"the attribute {name} of this value is not supported")
 
 
-def has_attribute(owner: py.Value, name: str) -> bool:
-    """Return whether a plain value has an attribute in Python 3.12."""
-    if isinstance(owner, PurePosixPath):
-        return hasattr(PosixPath, name) or name in _PYTHON_3_12
-    return isinstance(owner, py.PLAIN) and hasattr(owner, name)
+def has_attribute(owner: py.Value, name: str, releases: tuple[Release, ...] = ()) -> bool:
+    """Return whether a plain value has an attribute, or may have one that is private."""
+    kind = "dict" if isinstance(owner, dict) else type(owner).__name__
+    names = python_names(f"class {kind}", releases)
+    return isinstance(owner, py.PLAIN) and (name in names or name.startswith("_"))
 
 
 def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | None:
@@ -71,7 +72,7 @@ def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | Non
             )
         return call_plain(run, owner, *args, **kwargs)
 
-    return py.PlainFunction(name, charged, kind, getattr(owner, name))
+    return py.PlainFunction(name, charged, kind)
 
 
 def _search_cost(text: py.Value, part: py.Value) -> int:

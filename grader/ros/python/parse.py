@@ -6,7 +6,7 @@ import sys
 import tokenize
 import warnings
 from codecs import lookup
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from io import BytesIO
 from typing import NamedTuple
@@ -14,22 +14,30 @@ from typing import NamedTuple
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.reuse import reuse
 from grader.base.source import Location, Source
+from grader.ros.known.python_names import python_version, shared_message
+from grader.ros.known.releases import Release
 from grader.ros.python.walking import children, walk
 
 _SLOW_ENCODINGS = (
     "idna",
     "punycode",
 )  # encodings of domain names; their time grows with the square of the length
-_JAZZY = (3, 12)  # the Python version of ROS 2 Jazzy
-# What Python 3.12 added: type parameters and the statement type (PEP 695), and in a line, an
-# f-string whose braces are still open at its quote or at the end of the line (PEP 701).
-_TYPES = re.compile(
-    r"^[ \t]*(?:type[ \t]+\w+[ \t]*[=\[]|(?:async[ \t]+)?(?:def|class)[ \t]+\w+[ \t]*\[)",
-    re.MULTILINE,
+_JAZZY = 12  # the minor version of Python of ROS 2 Jazzy
+# What a minor version of Python added, as it stands in a line: PEP 758 and 750, 696, 695, 701. A
+# brace of an f-string that is open at its quote, at a backslash or at the end of the line is one of
+# PEP 701. `feature_version` tells for older ones. Few files need the patterns: they are no objects.
+_F_STRINGS = (
+    12,
+    r"""\b[rR]?[fF][rR]?(['"])(?:(?!\1).)*?(?<!\{)\{(?:(?!\1)[^\\{}])*(?:\1(?=.*\})|\\|$)""",
 )
-_OPEN_BRACES = re.compile(
-    r"""\b[rR]?[fF][rR]?(['"])(?:(?!\1).)*?(?<!\{)\{(?:(?!\1)[^{}])*(?:\1|$)"""
+_ADDED = (
+    (14, r"""^\s*except\*?\s+[\w.]+\s*,|(?<![\w'"])[rR]?[tT][rR]?['"]"""),
+    (13, r"^\s*(?:type|(?:async\s+)?def|class)\s+\w+\s*\[[^\]]*="),
+    (12, r"^\s*(?:type\s+\w+\s*[=\[]|(?:(?:async\s+)?def|class)\s+\w+\s*\[)"),
+    _F_STRINGS,
 )
+# In it, versions of Python name other places and say other things.
+_F_STRING = r"""\b[rR]?[fF][rR]?(['"])(?:.*?\1)?"""
 _MAX_SEARCHED = 1_000  # characters of a line
 _FUNCTIONS = ("def ", "lambda", "for ")  # what has code of its own; a comprehension has
 _MAX_FUNCTIONS = 2_000  # of a file that is compiled
@@ -61,6 +69,7 @@ class Code(NamedTuple):
     source: Source
     tree: ast.Module
     conflict: tuple[str, Position] | None = None  # of git, without which it was parsed
+    releases: tuple[Release, ...] = ()  # whose Python reads it; none: that of Jazzy
 
 
 @lru_cache(maxsize=4)  # the readers of a module follow each other
@@ -94,14 +103,14 @@ def location_in(source: Source, position: Position) -> Location:
     return Location(source.path, position.line, column + 1)
 
 
-def parse(data: bytes, path: str) -> Code | SyntaxFault:
-    """Parse the bytes of a Python file.
+def parse(data: bytes, path: str, releases: tuple[Release, ...] = ()) -> Code | SyntaxFault:
+    """Parse the bytes of a Python file, as the newest Python of some releases does.
 
     Never raises: what Python refuses, also for its depth, is a SyntaxFault.
     """
     resolved = resolve_conflicts(data)
     try:
-        parsed = _parse(resolved.data if resolved is not None else data, path)
+        parsed = _parse(resolved.data if resolved is not None else data, path, releases)
         if resolved is None:
             return parsed
         if isinstance(parsed, Code):
@@ -113,8 +122,8 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
         )
 
 
-@reuse
-def _parse(data: bytes, path: str) -> Code | SyntaxFault:
+def _decode(data: bytes, path: str) -> Source | SyntaxFault:
+    """Return the text of a file, as Python decodes it."""
     try:
         encoding, _ = tokenize.detect_encoding(BytesIO(data).readline)
         if lookup(encoding).name in _SLOW_ENCODINGS:
@@ -134,73 +143,116 @@ def _parse(data: bytes, path: str) -> Code | SyntaxFault:
     if "\0" in text:
         line = text.count("\n", 0, text.index("\0")) + 1
         return SyntaxFault(source, "source code cannot contain null bytes", Location(path, line, 1))
+    return source
+
+
+@reuse
+def _parse(data: bytes, path: str, releases: tuple[Release, ...]) -> Code | SyntaxFault:
+    source = _decode(data, path)
+    if isinstance(source, SyntaxFault):
+        return source
+    text = source.text
+    minor = python_version(releases)
+    # Python 3.14 does not tell with parentheses, which Python 3.9 added, by feature_version.
+    features = (3, max(minor, 9))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter(
                 "ignore"
             )  # such as an invalid escape sequence, which Python accepts
             try:
-                tree = ast.parse(text, feature_version=_JAZZY)
+                tree = ast.parse(text, feature_version=features)
             except SystemError:
                 # CPython 3.11 miscounts its depth if its garbage collector runs meanwhile: try
                 # again
-                tree = ast.parse(text, feature_version=_JAZZY)
+                tree = ast.parse(text, feature_version=features)
             # Never run: the compiler finds errors that the grammar allows. It compares the code of
             # equal functions with each other, so that many take long.
             if sum(map(text.count, _FUNCTIONS)) <= _MAX_FUNCTIONS:
                 compile(tree, path, "exec", dont_inherit=True)
-            return Code(source, tree)
+            code = Code(source, tree, releases=releases)
+            if minor >= _F_STRINGS[0]:
+                return code
+            lines = [node.lineno for node in walk(tree) if isinstance(node, ast.JoinedStr)]
+            return _newer_syntax(source, lines, minor, [_F_STRINGS]) or code
     except SyntaxError as error:
-        location = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
-        return SyntaxFault(
-            source,
-            _message_of(error),
-            location,
-            is_certain=not _is_of_newer_python(error, text),
-            reason=error.msg,
+        line = max(error.lineno or 1, 1)
+        reason, message, column = _described(error, source.line(line))
+        # Python 3.14 refuses an except for its version at the end of the statement.
+        above = range(line, 0 if "only supported in Python" in error.msg else line - 2, -1)
+        return _newer_syntax(source, above, minor) or SyntaxFault(
+            source, message, Location(path, line, column), reason=reason
         )
     except (ValueError, OverflowError):
         return SyntaxFault(source, _TOO_DEEP, Location(path, 1, 1))
 
 
-def _message_of(error: SyntaxError) -> str:
-    """Return Python's message, with the word or character where it says no more than a place."""
-    line, start = error.text or "", max((error.offset or 1) - 1, 0)
-    token = re.compile(r"\w{1,30}|\S").match(line, start)
-    if error.msg != "invalid syntax" or token is None:
-        return error.msg
-    return f"{error.msg} at {token[0]!r}"
+def _newer_syntax(
+    source: Source,
+    lines: Iterable[int],
+    minor: int,
+    added: Iterable[tuple[int, str]] = _ADDED,
+) -> SyntaxFault | None:
+    """Return that one of some lines needs a newer version of Python than reads the file.
 
-
-def _is_of_newer_python(error: SyntaxError, text: str) -> bool:
-    """Return whether the Python of ROS 2 Jazzy may accept what this older Python refuses."""
-    if sys.version_info >= _JAZZY:
-        return False
-    in_f_string = error.msg.startswith("f-string") or _OPEN_BRACES.search(
-        (error.text or "")[:_MAX_SEARCHED].rstrip()
-    )
-    return bool(in_f_string or _TYPES.search(text))
-
-
-def parse_expression(text: str) -> ast.expr | str | None:
-    """Return an expression, or Python's message on why it is none.
-
-    Returns None if it is nested too deeply.
+    That is the version of the release, which certainly refuses the file, or the one that runs the
+    grader.
     """
+    running = sys.version_info.minor
+    for line in filter(None, lines):
+        text = source.line(line)[:_MAX_SEARCHED].rstrip()
+        for needed, pattern in added:
+            if needed > min(minor, running) and re.search(pattern, text):
+                other = f"Python 3.{running} runs the grader"
+                if needed > minor:
+                    other = f"the release has Python 3.{minor}"
+                message = f"line {line} needs Python 3.{needed}, and {other}"
+                return SyntaxFault(source, message, Location(source.path, line, 1), needed > minor)
+    return None
+
+
+def _described(error: SyntaxError, line: str) -> tuple[str, str, int]:
+    """Return what is wrong in a line, as each version of Python says it.
+
+    This is the reason, the message, which has the word or character where the reason says no more
+    than a place, and the column. The versions name other places in f-strings.
+    """
+    column, line = max(error.offset or 1, 1), line[:_MAX_SEARCHED]
+    spans = [match.span() for match in re.finditer(_F_STRING, line)]
+    is_inside = any(start + 1 < column <= end for start, end in spans)
+    is_of_f_string = error.msg.startswith("f-string") or (error.text or line).rstrip("\n") != line
+    if spans and (is_inside or is_of_f_string):
+        return "invalid f-string", "invalid f-string", spans[0][0] + 1
+    if error.msg.startswith("expected argument value"):
+        rest = line[(error.end_offset or 1) - 1 :].lstrip()
+        column = len(line) - len(rest) + 1
+    reason = message = shared_message(error.msg)
+    token = re.match(r"\w{1,30}|\S", line[column - 1 :])
+    if reason == "invalid syntax" and token is not None:
+        message = f"{reason} at {token[0]!r}"
+    return reason, message, column
+
+
+def parse_expression(text: str) -> ast.expr | SyntaxFault:
+    """Return an expression as the Python of ROS 2 Jazzy reads it, or why it does not."""
+    source, at = Source("", text), Location("", 1, 1)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return ast.parse(text, mode="eval").body
+            return ast.parse(text, mode="eval", feature_version=(3, _JAZZY)).body
     except SyntaxError as error:
-        return f"SyntaxError: {_message_of(error)}"
+        _, message, _ = _described(error, text)
+        # No line follows in which an f-string may go on.
+        newer = _newer_syntax(Source("", text + "}"), (1,), _JAZZY)
+        return newer or SyntaxFault(source, f"SyntaxError: {message}", at)
     except (
         RecursionError,
         MemoryError,
         SystemError,
     ):  # how deep differs between versions; CPython 3.11 may miscount
-        return None
+        return SyntaxFault(source, "the expression is nested too deeply", at, is_certain=False)
     except (ValueError, OverflowError) as error:
-        return f"{type(error).__name__}: {error}"
+        return SyntaxFault(source, f"{type(error).__name__}: {error}", at)
 
 
 def own_nodes(node: ast.AST) -> list[ast.AST]:

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from grader.base.source import Edit, Edits, Source
+from grader.ros.known.python_names import python_names
 from grader.ros.python.bindings import names_bound
 from grader.ros.python.library import USUAL_NAMES
 from grader.ros.python.parse import Code, SyntaxFault, parse, parse_expression
@@ -175,6 +176,11 @@ class PythonFile:
             for node in self.nodes
             if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
         )
+
+    @property
+    def undefined(self) -> frozenset[str]:
+        """The names that it reads, and that neither it nor Python defines."""
+        return self.used - self.bound - python_names("builtins")
 
     @cached_property
     def imports(self) -> list[ast.Import | ast.ImportFrom]:

@@ -12,6 +12,8 @@ from io import StringIO
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
+from grader.ros.known.python_names import shared_message
+
 if TYPE_CHECKING:
     from grader.ros.python.parse import Position
 
@@ -288,19 +290,13 @@ class PlainFunction:
     `kind` is "plain" for one whose arguments are wholly known; "holds" for one that only passes on
     what a list contains, known or not; "applies" for such a one that calls functions, by the one
     that it is given first; "path" for one whose result may begin with the stand-in of a folder,
-    "text" for one that may contain it. `own` is Python's own function, where `run` stands for one.
+    "text" for one that may contain it.
     """
 
-    __slots__ = ("kind", "name", "own", "run")
+    __slots__ = ("kind", "name", "run")
 
-    def __init__(
-        self,
-        name: str,
-        run: Callable[..., Value],
-        kind: str = "plain",
-        bound: Callable[..., Value] | None = None,
-    ) -> None:
-        self.name, self.run, self.kind, self.own = name, run, kind, bound
+    def __init__(self, name: str, run: Callable[..., Value], kind: str = "plain") -> None:
+        self.name, self.run, self.kind = name, run, kind
 
 
 # The functions that are evaluated, by their full names; each of the second kind takes the
@@ -367,7 +363,8 @@ def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) ->
                 "this use of a function, a namespace or an iterator is not supported"
             ) from None
         message = error.args[0] if isinstance(error, KeyError) and error.args else error
-        raise EvaluationFails(f"{type(error).__name__}: {message}", kind=type(error)) from None
+        text = f"{type(error).__name__}: {shared_message(str(message))}"
+        raise EvaluationFails(text, kind=type(error)) from None
 
 
 def iterate(value: Value) -> Iterator[Value]:

@@ -6,7 +6,7 @@ Each defect rejects the whole file.
 from math import inf
 
 from grader.base.text import quoted
-from grader.base.transforms import FULL_TURN, X_AXIS, Vector, unit
+from grader.base.transforms import FULL_TURN, X_AXIS, Vector, add_up, unit
 from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.diagnostics import ElementReader, Problems, first_children
 from grader.ros.urdf.model import (
@@ -119,7 +119,7 @@ def _read_axis(
         )
         problems.add(urdf_problems.ZERO_AXIS, message, axis, "xyz")
     elif (
-        abs(sum(component * component for component in direction) - 1.0) > 0.02
+        abs(add_up(component * component for component in direction) - 1.0) > 0.02
     ):  # 0.71 0.71 0 is rounded only
         message = "only the direction of an axis counts: ROS 2 normalizes it"
         problems.add(urdf_problems.SCALED_AXIS, message, axis, "xyz")

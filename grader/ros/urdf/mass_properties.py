@@ -12,7 +12,7 @@ from itertools import combinations, combinations_with_replacement
 from math import hypot, isfinite, nan
 from typing import NamedTuple
 
-from grader.base.transforms import Rotation, Transform, Vector, dot, minus
+from grader.base.transforms import Rotation, Transform, Vector, add_up, dot, middle_of, minus
 from grader.ros.urdf.model import (
     INERTIA,
     Box,
@@ -160,7 +160,7 @@ def uniform_solid(shapes: Iterable[tuple[Shape, Transform]], mass: float) -> Mas
     numbers that are too large.
     """
     placed = [(shape, pose, shape.volume) for shape, pose in shapes]
-    total = sum(volume for _, _, volume in placed)
+    total = add_up(volume for _, _, volume in placed)
     if not (total > 0.0 and isfinite(total)):
         raise ValueError("the shapes have no volume that can be computed")
     parts = [(shape, pose, mass * (volume / total)) for shape, pose, volume in placed]
@@ -190,12 +190,10 @@ def together(bodies: Iterable[MassProperties]) -> MassProperties:
     The sum of their masses must not be 0.
     """
     every = list(bodies)
-    mass = sum(body.mass for body in every)
-    x = sum(body.mass * body.centre[0] for body in every) / mass
-    y = sum(body.mass * body.centre[1] for body in every) / mass
-    z = sum(body.mass * body.centre[2] for body in every) / mass
-    moved = [shifted(body.inertia, body.mass, minus(body.centre, (x, y, z))) for body in every]
-    return MassProperties(mass, (x, y, z), _tensor(map(sum, zip(*moved, strict=True))))
+    mass = add_up(body.mass for body in every)
+    centre = middle_of([(body.mass, body.centre) for body in every])
+    moved = [shifted(body.inertia, body.mass, minus(body.centre, centre)) for body in every]
+    return MassProperties(mass, centre, _tensor(map(add_up, zip(*moved, strict=True))))
 
 
 def turned(inertia: Tensor, T_a_b: Rotation) -> Tensor:

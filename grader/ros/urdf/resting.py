@@ -17,9 +17,11 @@ from grader.base.transforms import (
     Z_AXIS,
     Transform,
     Vector,
+    add_up,
     cross,
     degrees_between,
     dot,
+    middle_of,
     minus,
     unit,
 )
@@ -169,13 +171,9 @@ def solid_shapes(elements: Iterable[Visual | Collision]) -> list[Visual | Collis
 
 def _mean(weighted: Sequence[tuple[float, Vector]]) -> Vector:
     """Return the mean of points with weights. Raises NotDecided if all weights are 0."""
-    total = sum(weight for weight, _ in weighted)
-    if not 0.0 < total < inf:
+    if not 0.0 < add_up(weight for weight, _ in weighted) < inf:
         raise NotDecided("the robot has no mass and no shape with a volume", "a robot has no mass")
-    x = sum(weight * point[0] for weight, point in weighted) / total
-    y = sum(weight * point[1] for weight, point in weighted) / total
-    z = sum(weight * point[2] for weight, point in weighted) / total
-    return (x, y, z)
+    return middle_of(weighted)
 
 
 def find_rest(body: _RestingBody) -> Rest:
@@ -330,7 +328,7 @@ def _fit_around(triangle: list[Vector], centre: Vector, up: Vector) -> tuple[flo
     """
     a, b, c = (minus(corner, centre) for corner in triangle)
     parts = [dot(up, cross(a, b)), dot(up, cross(b, c)), dot(up, cross(c, a))]
-    area = sum(parts)
+    area = add_up(parts)
     if area <= _THIN * max(dot(a, a), dot(b, b), dot(c, c)):
         return (-inf, 0.0)
     return (min(0.0, min(parts) / area + _ROUNDING), area)

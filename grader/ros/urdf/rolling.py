@@ -5,11 +5,21 @@ base, that one is taken under which the contacts slip least; casters and fixed s
 Lengths are metres, in the frame of the base; wheels turn at 1 rad/s.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import atan2, degrees, hypot, pi, radians
 from typing import NamedTuple
 
-from grader.base.transforms import Transform, Vector, cross, dot, minus, rotation_about, unit
+from grader.base.transforms import (
+    Transform,
+    Vector,
+    add_up,
+    cross,
+    dot,
+    middle_of,
+    minus,
+    rotation_about,
+    unit,
+)
 from grader.ros.urdf.model import Joint
 from grader.ros.urdf.resting import level_directions, moved
 from grader.ros.urdf.shapes import PlacedShape
@@ -91,7 +101,7 @@ class Course(NamedTuple):
         2004, section 3.2) by least squares: two of each wheel, one of a wheel with rollers.
         """
         x, y = level_directions(up)
-        middle = middle_of([wheel.contact for wheel in wheels])
+        middle = mean_of(wheel.contact for wheel in wheels)
         rows: list[tuple[Vector, float]] = []
         wheel_of_row: list[int] = []
         for number, wheel in enumerate(wheels):
@@ -110,7 +120,7 @@ class Course(NamedTuple):
     def velocity_of(self, point: Vector) -> Vector:
         """Return the velocity of a point of the base, in m/s."""
         forward, left = level_directions(self.up)
-        middle = middle_of([wheel.contact for wheel in self.wheels])
+        middle = mean_of(wheel.contact for wheel in self.wheels)
         swept = cross(self.up, minus(point, middle))
         return moved(
             (0.0, 0.0, 0.0), [(forward, self.forward), (left, self.left), (swept, self.turn)]
@@ -124,7 +134,7 @@ class Course(NamedTuple):
     @property
     def rim_speed(self) -> float:
         """The mean radius of the wheels, which is the speed of their rims at 1 rad/s."""
-        return sum(wheel.radius for wheel in self.wheels) / len(self.wheels)
+        return add_up(wheel.radius for wheel in self.wheels) / len(self.wheels)
 
     @property
     def off(self) -> float:
@@ -146,16 +156,13 @@ class Course(NamedTuple):
     def sides(self) -> list[float]:
         """How far to the left of the middle each wheel touches the ground, in metres."""
         _, left = level_directions(self.up)
-        middle = middle_of([wheel.contact for wheel in self.wheels])
+        middle = mean_of(wheel.contact for wheel in self.wheels)
         return [dot(minus(wheel.contact, middle), left) for wheel in self.wheels]
 
 
-def middle_of(points: Sequence[Vector]) -> Vector:
+def mean_of(points: Iterable[Vector]) -> Vector:
     """Return the mean of points."""
-    x = sum(point[0] for point in points) / len(points)
-    y = sum(point[1] for point in points) / len(points)
-    z = sum(point[2] for point in points) / len(points)
-    return (x, y, z)
+    return middle_of([(1.0, point) for point in points])
 
 
 def _held_directions(wheel: DrivenWheel, up: Vector) -> list[Vector]:

@@ -19,7 +19,7 @@ from grader.ros.urdf.resting import (
     lowest_points,
     solid_shapes,
 )
-from grader.ros.urdf.rolling import Course, DrivenWheel, middle_of
+from grader.ros.urdf.rolling import Course, DrivenWheel, mean_of
 from grader.ros.urdf.shapes import PlacedShape
 
 _GRAVITY = 9.81  # m/s^2
@@ -168,7 +168,7 @@ class StandingRobot:
                 if joint.name in [above.name for above in robot.chain(name)]:
                     shapes.append(shape)
             axis = T_base_joint.rotate(robot.axis(joint))
-            contact = middle_of(lowest_points(shapes, up))
+            contact = mean_of(lowest_points(shapes, up))
             roller = None if rollers is None else rollers[number]
             wheel = DrivenWheel(
                 link, joint, axis, T_base_joint.translation, tuple(shapes), contact, roller

@@ -99,7 +99,7 @@ def _noted(name: str, function: PlainFunction, note: Callable[[str], object]) ->
         note(name)
         return function.run(*args, **kwargs)
 
-    return PlainFunction(function.name, run, function.kind, function.own)
+    return PlainFunction(function.name, run, function.kind)
 
 
 def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:

@@ -54,7 +54,14 @@ def read_workspace(
     """
     if stated is None:
         stated = stated_releases(tree)
-    all_packages = read_packages(tree, "", memory=memory, most=_MAX_PACKAGES, are_whole=True)
+    all_packages = read_packages(
+        tree,
+        "",
+        memory=memory,
+        most=_MAX_PACKAGES,
+        releases=stated.releases,
+        are_whole=True,
+    )
     packages = _outermost(all_packages)
     ros1_packages = tuple(package for package in packages if package.is_of_ros1)
     return OpenedWorkspace(

@@ -6,7 +6,7 @@ from grader.ros.launch.valid_names import is_node_name, why_no_topic
 from grader.ros.nodes.node_facts import CodeRule, NodeFacts
 from grader.ros.package.found_problems import syntax_fixes
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, Undecided
+from grader.workspace.rules.names import Compared, Fact, Mismatch, Undecided, warning
 from grader.workspace.rules.rule_table import (
     ACTION_RESULT,
     BUFFER_LISTENER,
@@ -68,11 +68,13 @@ def code_facts(workspace: Workspace) -> Iterator[Fact]:
         for program in nodes.programs:
             if program.syntax is not None:
                 at = program.syntax.location
-                message = f"Python cannot read the file: {program.syntax.message}"
                 if program.syntax.is_certain:
+                    message = f"Python cannot read the file: {program.syntax.message}"
                     fixes = syntax_fixes(program.syntax.source)
                     yield Mismatch(CODE_SYNTAX, message, at, fixes=fixes)
                 else:
+                    message = f"the file is not read: {program.syntax.message}"
+                    yield warning(CODE_SYNTAX, message, at)
                     yield Undecided("code", f"{at.path} is not read")
         for node in nodes.nodes:
             workspace.charge(1 + len(node.endpoints))

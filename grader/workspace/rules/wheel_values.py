@@ -16,14 +16,14 @@ from grader.base.errors import MissingElement, NotDecided
 from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
-from grader.base.transforms import Y_AXIS, Vector, dot, minus, unit
+from grader.base.transforms import Y_AXIS, Vector, add_up, dot, minus, unit
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
 from grader.ros.known.package_rows import WheelRow, controller_row
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint, Robot
 from grader.ros.urdf.numbers import finite_number
-from grader.ros.urdf.rolling import middle_of
+from grader.ros.urdf.rolling import mean_of
 from grader.ros.urdf.wheel_sizes import WheelSize, measure_wheel
 from grader.ros.xml.parsing import Element
 from grader.workspace.graph.gazebo_topics import system_of
@@ -95,7 +95,7 @@ class _Wheels(NamedTuple):
 
     def middle_of_group(self, group: int) -> Vector:
         """Return the mean of the middles of the wheels of a group."""
-        return middle_of([wheel.middle for wheel in self.groups[group]])
+        return mean_of(wheel.middle for wheel in self.groups[group])
 
     @property
     def all(self) -> list[WheelSize]:
@@ -387,7 +387,7 @@ def _toward_left(wheels: _Wheels) -> Vector:
 
 def _exchanged(wheels: _Wheels) -> list[WheelSize]:
     """Return the left wheels that are right of the middle between the wheels, and the reverse."""
-    middle = middle_of([wheel.middle for wheel in wheels.all])[1]
+    middle = mean_of(wheel.middle for wheel in wheels.all)[1]
     left, right = wheels.groups[:2]
     exchanged = [wheel for wheel in left if wheel.middle[1] < middle]
     return exchanged + [wheel for wheel in right if wheel.middle[1] > middle]
@@ -524,9 +524,9 @@ def _measure_half_sum(wheels: _Wheels) -> tuple[float, float, str]:
 
 def _measure_ring(wheels: _Wheels) -> tuple[float, float, str]:
     """Return the mean distance of wheels from the middle between them."""
-    middle = middle_of([wheel.middle for wheel in wheels.all])
+    middle = mean_of(wheel.middle for wheel in wheels.all)
     away = [minus(wheel.middle, middle) for wheel in wheels.all]
-    distance = sum(hypot(x, y) for x, y, _ in away) / len(away)
+    distance = add_up(hypot(x, y) for x, y, _ in away) / len(away)
     widths = [wheel.half_width or 0.0 for wheel in wheels.all]
     return distance, max(widths), f"the wheels of {wheels.names} are from their middle by"
 

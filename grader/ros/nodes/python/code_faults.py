@@ -17,6 +17,7 @@ from grader.base.problems import NO_FIXES, Fix, Fixes
 from grader.base.source import Location
 from grader.base.text import cut, enumerated
 from grader.ros.known.package_tables import python_table
+from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.nodes.node_facts import CodeFault
@@ -66,8 +67,6 @@ _CERTAIN = frozenset(
         "PercentFormatExpectedSequence",
     }
 )
-# Names that newer versions of Python define, so that each version finds the same.
-_LATER_BUILTINS = ("PythonFinalizationError", "EncodingWarning", "WindowsError")
 _INTERFACE = re.compile(r"\w+\.(?:msg|srv|action)\.[A-Z]\w*+")
 _SPINNING = "rclpy.spin_until_future_complete"
 # Names of groups and executors with which a callback may wait for another one.
@@ -264,10 +263,16 @@ def _undefined_names(code: Code) -> Iterator[CodeFault]:
     """Yield the names that are not defined, and texts that are formatted with too little."""
     from pyflakes.checker import Checker  # late: few commands read the code of nodes
 
+    class ReleaseChecker(Checker):
+        # Instead of those of the Python that runs it.
+        builtIns = set[str]()  # noqa: N815, RUF012
+
     if binds_unseen(every_node(code.tree)):
         return
     try:
-        checker = Checker(code.tree, builtins=_LATER_BUILTINS)
+        names = {*python_names("builtins", code.releases), "WindowsError"}
+        names |= {"__file__", "__builtins__", "__annotations__"}  # which each module has
+        checker = ReleaseChecker(code.tree, builtins=names)
     except RecursionError:
         return
     unevaluated = _unevaluated(code.tree)

@@ -6,7 +6,6 @@ is assumed for the grade; `code_faults` lists what is wrong in any code of a mod
 """
 
 import ast
-import builtins
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -15,6 +14,7 @@ from grader.base.names import near
 from grader.base.slips import Slip
 from grader.base.source import Edit
 from grader.ros.known.package_tables import python_table
+from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import given_argument
 from grader.ros.nodes.python.branches import INTERRUPTS, calls_in_branches
@@ -30,7 +30,6 @@ from grader.ros.python.parse import Code, Position, location_in, position_of
 from grader.ros.python.walking import children, walk
 
 _MAX_NAMES = 20  # that are not defined
-_GLOBAL = frozenset({*dir(builtins), "__file__", "__name__", "__doc__", "__spec__"})
 # Modules that students forget to import, and names in modules.
 _MODULES = ("rclpy", "math", "time", "os", "sys", "random")
 _IMPORTED = {"Node": "rclpy.node"}
@@ -85,6 +84,7 @@ class _NodeSlips:
         for node in nodes:
             self._bind(node)
         self._known = {*self._bound, *self._imports}
+        self._global = {"__file__", *python_names("builtins", tuple(releases))}
         self._functions = {
             node.name: node for node in code.tree.body if isinstance(node, ast.FunctionDef)
         }
@@ -222,7 +222,7 @@ class _NodeSlips:
             for node in _certain_parts(statement):
                 if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Load):
                     continue
-                if node.id in self._known or node.id in _GLOBAL or self._names_left == 0:
+                if node.id in self._known or node.id in self._global or self._names_left == 0:
                     continue
                 self._known.add(node.id)
                 self._names_left -= 1

@@ -69,7 +69,7 @@ def _python_file(package: Package, path: str, *, is_launch_file: bool) -> Iterat
     data = package.tree.read(path, _LIMIT)
     if data is None:
         return
-    parsed = parse(data, package.path(path))
+    parsed = parse(data, package.path(path), package.releases)
     if isinstance(parsed, Code):
         yield from launch_slips(parsed) if is_launch_file else name_slips(parsed)
     else:
@@ -91,7 +91,7 @@ def _build_slips(package: Package, installation: Installation) -> Iterator[Slip]
         return
     yield from _python_file(package, SETUP, is_launch_file=False)
     data = package.tree.read(SETUP, _LIMIT)
-    code = parse(data or b"", package.path(SETUP))
+    code = parse(data or b"", package.path(SETUP), package.releases)
     if isinstance(code, Code):
         yield from _argument_slips(installation, code)
         yield from _entry_slips(package, code.source)

@@ -8,7 +8,6 @@ What is opened under a condition is listed as well; actions and the topics of tf
 
 import ast
 import re
-import sys
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial
@@ -18,7 +17,8 @@ from grader.base.errors import InputError
 from grader.base.slips import Slip
 from grader.base.source import Edits, Location
 from grader.ros.installation.installation import InstalledFile
-from grader.ros.known.releases import Release
+from grader.ros.known.python_names import MODULES, python_names
+from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import CodePart, field_uses, given_argument, type_imports
 from grader.ros.nodes.node_facts import (
     CodeFault,
@@ -311,7 +311,7 @@ def _slips_of(package: Package, program: NodeProgram) -> list[Slip] | None:
     data = package.tree.read(program.path, _MAX_SEARCHED)
     if not package.budget.take_of_whole(len(data or b"") // _BYTES_A_PART):
         return None
-    code = parse(data or b"", package.path(program.path))
+    code = parse(data or b"", package.path(program.path), package.releases)
     if isinstance(code, Code):
         started = StartedProgram(program.name, program.function)
         return node_slips(code, started, package.releases)
@@ -434,7 +434,7 @@ def _may_be_node_class(name: str) -> bool:
     """Return whether a full name may be that of a class of nodes of another package."""
     package, _, rest = name.partition(".")
     last = rest.rpartition(".")[2]
-    is_other = package not in sys.stdlib_module_names and package not in _WITHOUT_NODES
+    is_other = package not in python_names(MODULES, RELEASES) and package not in _WITHOUT_NODES
     return is_other and last[:1].isupper() and not _MESSAGE_PART.search(name)
 
 

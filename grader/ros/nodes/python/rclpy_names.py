@@ -4,8 +4,10 @@ Two readers search code for faults with these names. `node_slips` searches what 
 runs, and `code_faults` all code of a module.
 """
 
-import sys
 from collections.abc import Mapping
+
+from grader.ros.known.python_names import MODULES, python_names
+from grader.ros.known.releases import RELEASES
 
 # Of rclpy of Jazzy: rclpy/__init__.py, rclpy/node.py and rclpy/lifecycle/ of ros2/rclpy.
 NODE_CLASSES = frozenset(
@@ -37,4 +39,4 @@ _MESSAGES = ("_msgs", "_interfaces", "_srvs", "_actions")
 def is_passive(module: str) -> bool:
     """Return whether a module surely neither initialises rclpy nor spins a node."""
     top = module.partition(".")[0]
-    return top in _PASSIVE or top in sys.stdlib_module_names or top.endswith(_MESSAGES)
+    return top in _PASSIVE or top in python_names(MODULES, RELEASES) or top.endswith(_MESSAGES)
