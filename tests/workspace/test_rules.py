@@ -120,7 +120,7 @@ def test_a_rule_is_explained() -> None:
     text = run(("explain", "topic-type")).stdout.decode()
     assert text.startswith("topic-type: a rule of `grader inspect`\n\nPublishers and subscriptions")
     assert "REF007 (error)" in text
-    assert "no message arrives" in text
+    assert RULES["topic-type"].why.split(".")[0] in " ".join(text.split())
     assert re.search(r"In \d+ public workspaces: \d+ true, \d+ false\.", text)
     assert "REF009 (warning)" in text
     wrong = EXAMPLES["topic-type"]["wrong"].strip()

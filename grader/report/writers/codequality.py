@@ -41,7 +41,7 @@ def _issues(findings: Sequence[Finding], base: Base) -> str:
     for finding, fingerprint in zip(findings, fingerprints(findings, base), strict=True):
         path, where = place_in_repository(finding, base)
         issue = {
-            "description": message_in_repository(finding, base),
+            "description": f"{finding.rule.label}: {message_in_repository(finding, base)}",
             "check_name": finding.rule.id,
             "fingerprint": fingerprint,
             "severity": _SEVERITIES[finding.severity],
