@@ -317,7 +317,7 @@ def public_findings_by_rule() -> dict[str, str]:
     """Return for each rule that was counted how often it was true in public workspaces."""
     table = tomllib.loads(WORKSPACES.read_text(encoding="utf-8"))
     newer = tomllib.loads(NEWER_RULES.read_text(encoding="utf-8"))
-    counts: dict[str, Counter[bool]] = {}
+    counts = {name: Counter[bool]() for name in table["without_findings"] if name in RULES}
     for workspace in table["workspace"]:
         for error in workspace.get("error", ()):
             if "rule" in error:
