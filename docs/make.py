@@ -7,6 +7,7 @@ import re
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
+from importlib import import_module
 from io import StringIO
 from itertools import chain
 from pathlib import Path
@@ -45,6 +46,7 @@ from grader.ros.known.package_files import IndexedKey, facts_in_file, packages_w
 from grader.ros.known.parameter_rows import NodeRows, known_nodes, node_rows
 from grader.ros.known.releases import RELEASES
 from grader.workspace.rules.problem_kinds import EVERY_KIND
+from grader.workspace.rules.rule_table import RULES, Rule, list_readers, reload_rules
 
 KEYS = {
     "The rubric": RUBRIC,
@@ -80,6 +82,7 @@ LANGUAGES = {
 }
 DOCS = Path(__file__).resolve().parent
 WORKSPACES = DOCS.parent / "tests/workspace/public_workspaces.toml"
+RULES_FILE = "grader/workspace/rules/rules.json"
 NEWER_RULES = DOCS.parent / "tests/workspace/public_rules.toml"
 SAMPLE = DOCS.parent / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf"
 
@@ -99,6 +102,7 @@ def pages() -> dict[str, str]:
         ),
         "report.svg": picture(report),
         "../grader/ros/known/index.toml": index_of_packages(),
+        f"../{RULES_FILE}": table_of_rules(),
         **{f"schemas/{name}.json": to_json(json_schema(name)) for name in get_args(SchemaName)},
     }
 
@@ -132,7 +136,10 @@ def problems() -> Iterator[str]:
         if not own_rules:
             yield from example(kind.code)
         for rule in own_rules:
-            yield from (f"### `{rule.name}`", "", escaped(rule.sentence), "", *example(rule.name))
+            yield from (f"### `{rule.name}`", "", escaped(f"{rule.sentence} {rule.why}"), "")
+            for symptom in rule.symptoms:
+                yield from (f"In the terminal: `{symptom.example}`", "")
+            yield from example(rule.name)
 
 
 # What one may want to ask, and the modules of the checks that do.
@@ -271,6 +278,61 @@ def index_of_packages() -> str:
     return "\n".join(lines) + "\n"
 
 
+def table_of_rules() -> str:
+    """Return rules.json: the entries of rules, the functions that read facts, and public findings.
+
+    New functions come after those that the table has: the order of what is found stays.
+    """
+    before = list_readers()
+    readers: set[str] = set()
+    rows: dict[str, str] = {}
+    for path in sorted((DOCS.parent / "grader/workspace/rules").glob("*.py")):
+        module = import_module(f"grader.workspace.rules.{path.stem}")
+        for name, value in vars(module).items():
+            if isinstance(value, Rule):
+                rows[value.name] = json.dumps(row_of_rule(value))
+            is_own = getattr(value, "__module__", "") == module.__name__
+            if is_own and re.fullmatch(r"[a-z]\w*_facts", name) and path.stem != "reading":
+                readers.add(f"{path.stem}.{name}")
+    kept = [place for place in before if place in readers]
+    order = [*kept, *sorted(readers.difference(kept))]
+    rules = ",\n".join(f"{json.dumps(name)}: {row}" for name, row in rows.items())
+    public = json.dumps(public_findings_by_rule(), indent=0)
+    places = json.dumps(order, indent=0)
+    return f'{{"readers": {places},\n"public": {public},\n"rules": {{\n{rules}\n}}}}\n'
+
+
+def row_of_rule(rule: Rule) -> dict[str, Any]:
+    """Return an entry as data, with its kinds by their codes."""
+    defaults = Rule._field_defaults
+    row = {key: value for key, value in rule._asdict().items() if value != defaults.get(key)}
+    del row["name"]
+    row |= {"kind": rule.kind.code, "doubtful": rule.doubtful.code}
+    if rule.symptoms:
+        row["symptoms"] = [symptom._asdict() for symptom in rule.symptoms]
+    return row
+
+
+def public_findings_by_rule() -> dict[str, str]:
+    """Return for each rule that was counted how often it was true in public workspaces."""
+    table = tomllib.loads(WORKSPACES.read_text(encoding="utf-8"))
+    newer = tomllib.loads(NEWER_RULES.read_text(encoding="utf-8"))
+    counts = {name: Counter[bool]() for name in table["without_findings"] if name in RULES}
+    for workspace in table["workspace"]:
+        for error in workspace.get("error", ()):
+            if "rule" in error:
+                places = counts.setdefault(error["rule"], Counter())
+                places[error["is_true"]] += len(error["places"])
+    numbers = {name: (len(table["workspace"]), count) for name, count in counts.items()}
+    for rule in newer["rule"]:
+        count = Counter({True: rule["true"], False: rule["false"]})
+        numbers[rule["name"]] = rule.get("workspaces", newer["workspaces"]), count
+    return {
+        name: f"In {workspaces} public workspaces: {count[True]} true, {count[False]} false."
+        for name, (workspaces, count) in sorted(numbers.items())
+    }
+
+
 def has_fact(package: str, key: str) -> bool:
     """Return whether a package, or a program, controller or launch file of it has a fact."""
     facts = facts_in_file(package)
@@ -283,8 +345,8 @@ def misconfigurations() -> Iterator[str]:
     that is found, and the files of the examples.
     """
     kinds = tomllib.loads((DOCS / "examples/kinds.toml").read_text(encoding="utf-8"))
-    rules = tomllib.loads((DOCS / "examples/rules.toml").read_text(encoding="utf-8"))
-    frames = rules.pop("frames")
+    frames = tomllib.loads((DOCS / "examples/frames.toml").read_text(encoding="utf-8"))
+    rules = {rule.name: rule._asdict() for rule in RULES.values()}
     yield from counts(kinds)
     yield from ("", "| kind | what goes wrong | found as |", "|---|---|---|")
     for name, kind in kinds.items():
@@ -298,7 +360,7 @@ def misconfigurations() -> Iterator[str]:
             yield f"- Found as: {codes(kind)}"
             yield f"- Covers: {escaped(kind['scope'])}"
             yield from (f"- Source: {escaped(kind['source'])}", "")
-            yield from example_of_kind(kind, rules, frames)
+            yield from example_of_kind(kind, rules)
     yield from ("## Files of the examples", "")
     beside: set[str] = set()
     for kind in kinds.values():
@@ -346,9 +408,7 @@ def codes(kind: dict[str, Any]) -> str:
     return ", ".join(f"[`{code}`](problems.md#{code.lower()})" for code in kind.get("codes", ()))
 
 
-def example_of_kind(
-    kind: dict[str, Any], rules: dict[str, Any], frames: dict[str, str]
-) -> Iterator[str]:
+def example_of_kind(kind: dict[str, Any], rules: dict[str, Any]) -> Iterator[str]:
     """Yield the example of a kind of misconfiguration, or where it is."""
     shown = rules.get(kind.get("rule", ""), kind)
     if "wrong" not in shown:
@@ -356,7 +416,7 @@ def example_of_kind(
         yield from (f"Example: that of [{code}](problems.md#{code.lower()}).", "")
         return
     files = [f"[`{file}`](#{anchor(file)})" for file in files_beside(shown)]
-    for block in blocks_of(shown, frames):
+    for block in blocks_of({"frame": Rule._field_defaults["frame"], **shown}):
         said = f", in `{block.file}`" if block.file not in block.title else ""
         beside = f", beside {enumerated(files)}" if files and said else ""
         yield from (f"{block.title}{said}{beside}:", "")
@@ -431,6 +491,8 @@ def escaped(text: str) -> str:
 
 
 if __name__ == "__main__":
+    (DOCS.parent / RULES_FILE).write_text(table_of_rules(), encoding="utf-8")
+    reload_rules()  # from which the pages are made
     for name, text in pages().items():
         (DOCS / name).parent.mkdir(exist_ok=True)
         (DOCS / name).write_text(text, encoding="utf-8")

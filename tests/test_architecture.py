@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from grader.lab.checks.registry import own_checks
+from grader.workspace.rules.rule_table import list_readers
 from tests.prose import COMPREHENSIONS, Prose, size
 from tests.weight import MAX_NODES, count_nodes, table
 
@@ -365,6 +366,7 @@ def test_names_of_one_module_are_private() -> None:
     )
     readable = [path for path in others if "setup_samples" not in path.parts]
     used = {name for path in (*MODULES.values(), *readable) for name in used_names(path)}
+    used |= {f"grader.workspace.rules.{reader}" for reader in list_readers()}
     own = [
         (module, name)
         for module in MODULES

@@ -36,8 +36,7 @@ FILES = {
 }
 # The kinds of misconfiguration, of which tests/test_misconfigurations.py tests the examples.
 KINDS: dict[str, Any] = FILES.pop("kinds")
-# The examples of rules, which tests/workspace/test_rule_examples.py tests.
-RULE_EXAMPLES = FILES.pop("rules")
+del FILES["frames"]  # of the examples of rules, which tests/workspace/test_rule_examples.py tests
 FRAMES = {
     name: file["frames"]
     for file in FILES.values()

@@ -94,38 +94,48 @@ controller_server:
     controller_plugins: ["FollowPath"]
     a_parameter_of_a_newer_release: 1.0
 """
-RULE = """
-NOTE_LEFT = _machine("note-left", sentence="No launch file has a note of its author.")
-"""
-FINDER = """
+RULE = '''"""What the author of a launch file left in it."""
+
+from collections.abc import Iterator
+
+from grader.base.source import Source
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.rule_table import ONE_MACHINE, Rule
+
+_NOTE_LEFT = Rule(
+    "note-left",
+    "machine",
+    ONE_MACHINE,
+    ONE_MACHINE,
+    "No launch file has a note of its author.",
+    why="A reader does not know whether the file is finished.",
+    wrong="Node(package='turtlesim', executable='turtlesim_node', name='FIXME'),",
+    right="Node(package='turtlesim', executable='turtlesim_node', name='turtle'),",
+)
+
+
+def author_note_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the notes of authors in launch files."""
+    for package in workspace.packages:
+        for source in workspace.texts.launch_sources(package):
+            yield Compared("machine")
+            yield from _notes(source)
+
 
 def _notes(source: Source) -> Iterator[Mismatch]:
-    \"\"\"Yield the first note of an author in a launch file.\"\"\"
+    """Yield the first note of an author in a launch file."""
     at = source.text.find("FIXME")
     if at >= 0:
-        yield warning(NOTE_LEFT, "the launch file has a note of its author", source.at(at))
-"""
-RULE_EXAMPLE = """
-[note-left]
-wrong = "Node(package='turtlesim', executable='turtlesim_node', name='FIXME'),"
-right = "Node(package='turtlesim', executable='turtlesim_node', name='turtle'),"
-"""
-RULE_TEST = '''"""A note of an author in a launch file is named."""
-
-from grader.workspace.rules.reading import read_agreement
-from tests.workspace.rovers import LAUNCH, Edit, rover
-
-
-def _found(*edits: Edit) -> int:
-    found = read_agreement(rover(*edits).workspace).mismatches
-    return sum(it.rule.name == "note-left" for it in found)
-
-
-def test_a_note_is_left() -> None:
-    """Once, and nothing is said without one."""
-    assert _found((LAUNCH, "def generate", "NOTE = 'FIXME FIXME'\\n\\n\\ndef generate")) == 1
-    assert _found() == 0
+        yield warning(_NOTE_LEFT, "the launch file has a note of its author", source.at(at))
 '''
+VARIANT = """
+[[variant]]
+about = "a word of a note in lower case is no note"
+of = "note-left"
+text = "Node(package='turtlesim', executable='turtlesim_node', name='fixme'),"
+found = false
+"""
 
 
 @pytest.fixture
@@ -242,27 +252,14 @@ def test_a_new_rubric(project: Path) -> None:
     )
 
 
-CALL = """\
-    for package in workspace.packages:
-        for source in workspace.texts.launch_sources(package):
-            yield from _notes(source)
-"""
-
-
 def test_a_new_rule(project: Path) -> None:
-    """A rule is a row of the table, a function in the file of its family, an example, a test and a line of the changelog."""
+    """A rule is an entry with its function, a variant and a line of the changelog; the pages are made, and it fits the budget."""
     rules = project / "grader/workspace/rules"
-    replace(rules / "rule_table.py", "\n_moveit = ", f"{RULE}\n_moveit = ")
-    with (rules / "one_machine.py").open("a", encoding="utf-8") as family:
-        family.write(FINDER)
-    call = "    yield from _variables(workspace)\n"
-    replace(rules / "one_machine.py", call, f"{call}{CALL}")
-    replace(rules / "one_machine.py", "    HOME_PATH,\n", "    HOME_PATH,\n    NOTE_LEFT,\n")
-    examples = project / "docs/examples/rules.toml"
-    replace(examples, "\n[srdf-robot]\n", f"{RULE_EXAMPLE}\n[srdf-robot]\n")
-    (project / "tests/workspace/test_notes.py").write_text(RULE_TEST, encoding="utf-8")
-    python(project, "docs/make.py")
+    (rules / "author_notes.py").write_text(RULE, encoding="utf-8")
+    with (project / "tests/workspace/rule_variants.toml").open("a", encoding="utf-8") as variants:
+        variants.write(VARIANT)
     add_to_changelog(project, "The rule `note-left`.")
+    python(project, "docs/make.py")
     passes(
         project,
         "tests/workspace",

@@ -55,7 +55,7 @@ def test_an_example_of_a_kind_is_found(name: str, tmp_path: Path) -> None:
         found[side] = inspected(tmp_path / side)
         if side == "wrong":
             places = [it["location"] for it in found["wrong"] if it["code"] == code]
-            if "at" in shown:
+            if shown.get("at"):
                 assert shown["at"] in [it["path"] for it in places], found["wrong"]
             else:
                 assert any(it["path"] == path and it["line"] in lines for it in places), found

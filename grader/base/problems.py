@@ -102,6 +102,11 @@ class Problem(NamedTuple):
         return self.kind.code
 
     @property
+    def label(self) -> str:
+        """Its code and the name of its rule: REF003 controller-defined."""
+        return f"{self.code} {self.rule}".rstrip()
+
+    @property
     def severity(self) -> Severity:
         """The severity of its kind: an error keeps ROS 2 from loading the file."""
         return self.kind.severity

@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 from grader.base.problems import Kind
 from grader.base.toml_file import read_toml, toml_literal
 from grader.files.reading import shipped_folder
+from grader.workspace.api import RULES
 
-_CHECKS, _RULES = "checks", "rules"
+_CHECKS = "checks"
 
 
 class _ExampleBlock(NamedTuple):
@@ -37,6 +38,9 @@ def example_blocks(name: str) -> Iterator[_ExampleBlock]:
 
     Only if it is known; that of a code may be that of one of its rules.
     """
+    if name in RULES:
+        yield from blocks_of(RULES[name]._asdict())
+        return
     family = _family_of(name)
     entries = _family(family)
     example = entries.get(name, {})
@@ -46,21 +50,18 @@ def example_blocks(name: str) -> Iterator[_ExampleBlock]:
         if family == _CHECKS:
             given = f"\nwith = {toml_literal(example['with'])}" if "with" in example else ""
             yield _ExampleBlock("In a rubric", "rubric.toml", f'check = "{name}"{given}')
-        yield from blocks_of(example, entries["frames"])
+        yield from blocks_of({"frame": next(iter(entries["frames"])), **example})
 
 
-def blocks_of(example: Mapping[str, Any], frames: Mapping[str, str]) -> Iterator[_ExampleBlock]:
-    """Yield what is wrong and what is right in an example.
-
-    It is in the first frame unless it names another one. Then come the other files beside it.
-    """
-    file = _name_of(example.get("frame", next(iter(frames))))
-    yield _ExampleBlock("Wrong", file, example["wrong"].rstrip() or "(an empty file)")
-    yield _ExampleBlock("Right", file, example["right"].rstrip())
+def blocks_of(example: Mapping[str, Any]) -> Iterator[_ExampleBlock]:
+    """Yield what is wrong and what is right in an example, and the other files beside it."""
+    file = _name_of(example["frame"])
+    yield _ExampleBlock("Wrong", file, example["wrong"].strip("\n") or "(an empty file)")
+    yield _ExampleBlock("Right", file, example["right"].strip("\n"))
     for frame, text in example.get("beside", {}).items():
         other = _name_of(frame)
         if text:
-            yield _ExampleBlock(f"Beside it, in {other}", other, text.rstrip())
+            yield _ExampleBlock(f"Beside it, in {other}", other, text.strip("\n"))
 
 
 def _name_of(frame: str) -> str:
@@ -70,7 +71,7 @@ def _name_of(frame: str) -> str:
 def _family_of(name: str) -> str:
     if name.isupper():
         return name.rstrip(digits).lower()
-    return _RULES if "-" in name else _CHECKS
+    return _CHECKS
 
 
 @cache

@@ -20,7 +20,7 @@ from grader.lab.rubric.rubric import Rubric, shipped_rubrics
 from grader.report.criteria import model_lines
 from grader.report.examples import example_blocks, explanation_of
 from grader.ros.api import parameter_explanation, releases_explanation
-from grader.workspace.api import EVERY_KIND, RULES, Rule
+from grader.workspace.api import EVERY_KIND, RULES, Rule, public_findings
 
 _WIDTH = 80
 _FOR_INSTRUCTORS = "For instructors: how it is checked\n----------------------------------"
@@ -173,10 +173,12 @@ def _rules_text(kind: Kind) -> str:
 
 def _rule_text(rule: Rule) -> str:
     """Return the explanation of a rule, with that of its codes."""
-    texts = [f"{rule.name}: a rule of `grader inspect`", rule.sentence]
+    texts = [f"{rule.name}: a rule of `grader inspect`", rule.sentence, _fill(rule.why)]
+    for symptom in rule.symptoms:
+        texts.append(f"In the terminal:\n\n    {symptom.example}")
     for kind in dict.fromkeys((rule.kind, rule.doubtful)):
         texts.append(_fill(f"{kind.code} ({kind.severity}): {kind.title}. {explanation_of(kind)}"))
-    return _paragraphs([*texts, *_examples(rule.name)])
+    return _paragraphs([*texts, public_findings(rule.name), *_examples(rule.name)])
 
 
 def _paragraphs(texts: Iterable[str]) -> str:

@@ -29,6 +29,11 @@ class FindingKind(NamedTuple):
     page: str  # of the documentation; empty without one
     name: str = ""  # of a rule of workspaces
 
+    @property
+    def label(self) -> str:
+        """Its code or id and the name of its rule: REF003 controller-defined."""
+        return f"{self.id} {self.name}".rstrip()
+
 
 class Finding(NamedTuple):
     """One thing that is wrong, with the place to look at."""

@@ -15,6 +15,6 @@ VERDICTS = {
 def problem_line(problem: Problem) -> str:
     """Return a problem with its code, severity and location."""
     return (
-        f"{problem.code} {problem.severity} {location_text(problem.location)}: "
+        f"{problem.label} {problem.severity} {location_text(problem.location)}: "
         f"{printable(problem.message)}"
     )

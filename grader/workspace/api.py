@@ -59,6 +59,7 @@ if TYPE_CHECKING:
     from grader.workspace.rules.problem_kinds import EVERY_KIND as EVERY_KIND
     from grader.workspace.rules.rule_table import RULES as RULES
     from grader.workspace.rules.rule_table import Rule as Rule
+    from grader.workspace.rules.rule_table import public_findings as public_findings
 else:
     _NAMES = {
         "graph.graph_form": "graph_form",
@@ -84,6 +85,6 @@ else:
         "opening.opened": "OpenedWorkspace",
         "opening.opening": "STANDARD_INPUT open_workspace",
         "rules.problem_kinds": "EVERY_KIND",
-        "rules.rule_table": "RULES Rule",
+        "rules.rule_table": "RULES Rule public_findings",
     }
     __getattr__ = late_names(__name__, _NAMES)

@@ -1,4 +1,4 @@
-"""The examples of rules in docs/examples/rules.toml, as the files of a package."""
+"""The examples of rules, as the files of a package."""
 
 import re
 import tomllib
@@ -7,13 +7,13 @@ from pathlib import PurePosixPath
 from textwrap import indent
 from typing import Any, NamedTuple
 
+from grader.workspace.rules.rule_table import RULES
 from tests.command_line import ROOT
 
-_FILE = tomllib.loads((ROOT / "docs/examples/rules.toml").read_text(encoding="utf-8"))
-FRAMES: dict[str, str] = _FILE["frames"]
-EXAMPLES: dict[str, dict[str, Any]] = {
-    name: example for name, example in _FILE.items() if name != "frames"
-}
+FRAMES: dict[str, str] = tomllib.loads(
+    (ROOT / "docs/examples/frames.toml").read_text(encoding="utf-8")
+)
+EXAMPLES: dict[str, dict[str, Any]] = {rule.name: rule._asdict() for rule in RULES.values()}
 _PLACEHOLDER = re.compile(r"(?m)^( *)EXAMPLE$")
 _FOLDERS = {
     ".launch.py": "launch",

@@ -2,6 +2,7 @@
 
 from grader.base.source import Location
 from grader.workspace.rules.names import (
+    JOINT_DEFINED,
     Agreement,
     Compared,
     Correction,
@@ -13,7 +14,7 @@ from grader.workspace.rules.names import (
     Use,
     agreement,
 )
-from grader.workspace.rules.rule_table import JOINT_DEFINED, TOPIC_TYPE
+from grader.workspace.rules.rule_table import RULES
 
 _HERE, _THERE, _LATER = (
     Location("a.yaml", 3, 5),
@@ -96,7 +97,7 @@ def test_names_of_one_owner_do_not_define_those_of_another() -> None:
 
 def test_mismatches_are_in_the_order_of_their_places_and_once() -> None:
     """What two readers find is listed once; the first reason for which a family is undecided is kept."""
-    wrong = Mismatch(TOPIC_TYPE, "not alike", _LATER)
+    wrong = Mismatch(RULES["topic-type"], "not alike", _LATER)
     facts: list[Fact] = [
         wrong,
         wrong,

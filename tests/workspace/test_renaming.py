@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from grader.base.source import Edit
 from grader.workspace.rules.name_fixes import NameFixes
-from grader.workspace.rules.names import Use
+from grader.workspace.rules.names import DEFINED, Use
 from grader.workspace.rules.reading import read_facts
-from grader.workspace.rules.rule_table import DEFINED, Family
+from grader.workspace.rules.rule_table import Family
 from tests.examples import examples
 from tests.hints.trials import applied
 from tests.workspace.carts import agreement_of, cart, cart_files, edited, sure

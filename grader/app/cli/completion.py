@@ -4,7 +4,6 @@ They are found in the text of files: to load a rubric or a robot takes longer th
 for a completion.
 """
 
-import os
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -14,10 +13,8 @@ import typer
 from grader.files.reading import shipped_folder
 
 _RUBRIC_FILE = "rubric.toml"
-_MAX_ROBOTS, _MAX_SIZE = 20, 1024 * 1024  # files, bytes of each
-_MAX_DEPTH = 4  # of the folders of a workspace in which they are searched
+_MAX_SIZE = 1024 * 1024  # bytes of a file
 _CODE, _NAME = r"^\[([A-Z]+[0-9]{3})\]", r"^\[(\w+)\]"
-_ROBOTS = ("*.urdf", "*.xacro")
 
 
 def offer_rubrics(incomplete: str) -> list[str]:
@@ -50,30 +47,6 @@ def offer_codes(incomplete: str) -> list[str]:
     return _starting(incomplete, [*codes, *RULES])
 
 
-def offer_joints(context: typer.Context, incomplete: str) -> list[str]:
-    """Return the joints of the robots that are inspected, each ready for its value."""
-    tags = (tag for tag in _tags(context, "joint") if "fixed" not in tag)
-    return _starting(incomplete, [f"{name}=" for name in _names_of(tags)])
-
-
-def offer_links(context: typer.Context, incomplete: str) -> list[str]:
-    """Return the links of the robots that are inspected."""
-    return _starting(incomplete, _names_of(_tags(context, "link")))
-
-
-def offer_students(context: typer.Context, incomplete: str) -> list[str]:
-    """Return the students of the gradebook."""
-    _, *rows = _text_of(_gradebook(context) / "grades.csv").splitlines() or [""]
-    return _starting(incomplete, [row.partition(",")[0].strip('"') for row in rows])
-
-
-def offer_marked(context: typer.Context, incomplete: str) -> list[str]:
-    """Return the criteria of the gradebook's rubric, and what else can be marked."""
-    files = sorted((_gradebook(context) / "rubric").glob("*.toml"))
-    criteria = [name for file in files for name in _ids_in(file, "criterion")]
-    return _starting(incomplete, [*criteria, "grade", "deadline"])
-
-
 def _starting(incomplete: str, words: Iterable[str]) -> list[str]:
     """Return each word once that begins as it is typed."""
     return [word for word in dict.fromkeys(words) if word.startswith(incomplete)]
@@ -104,30 +77,3 @@ def _ids_in(file: Path, table: str) -> Iterator[str]:
             current = line.strip("[] ")
         elif current == table and match:
             yield match[1]
-
-
-def _tags(context: typer.Context, tag: str) -> Iterator[str]:
-    """Yield the start tags of an element in the robots at the path, else in the current folder."""
-    path = Path(context.params.get("path") or os.curdir)
-    files = [path] if path.is_file() else []
-    for depth in range(_MAX_DEPTH):
-        for pattern in _ROBOTS:
-            files += sorted(path.glob("*/" * depth + pattern))
-    for file in files[:_MAX_ROBOTS]:
-        yield from re.findall(rf"<{tag}\s[^<>]*>", _text_of(file))
-
-
-def _names_of(tags: Iterable[str]) -> Iterator[str]:
-    """Yield the names in start tags, but those that xacro computes."""
-    for tag in tags:
-        match = re.search(r"""\sname\s*=\s*["']([^"'$]+)["']""", tag)
-        if match:
-            yield match[1]
-
-
-def _gradebook(context: typer.Context) -> Path:
-    """Return the gradebook that is named, else the first one in the current folder."""
-    named = Path(context.params.get("gradebook") or "*")
-    if named.is_dir():
-        return named
-    return next((file.parent for file in sorted(Path().glob("*/class.toml"))), named)

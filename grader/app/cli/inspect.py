@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from grader.app.cli.completion import offer_codes, offer_joints, offer_links
+from grader.app.cli.completion import offer_codes
 from grader.app.cli.options import ArgOption, MaxSizeOption, SaveOption
 from grader.app.cli.streams import TERMINAL, pass_on
 from grader.files.reading import URDF_LIMIT
@@ -35,11 +35,9 @@ def inspect(
     robot: Annotated[str, typer.Option(metavar="NAME", help=_ROBOT, show_default=False)] = "",
     joint: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME=VALUE", help=_JOINT, autocompletion=offer_joints),
+        typer.Option(metavar="NAME=VALUE", help=_JOINT),
     ] = None,
-    relative_to: Annotated[
-        str | None, typer.Option(metavar="LINK", help=_RELATIVE, autocompletion=offer_links)
-    ] = None,
+    relative_to: Annotated[str | None, typer.Option(metavar="LINK", help=_RELATIVE)] = None,
     distro: Annotated[Release | None, typer.Option(metavar="NAME", help=_DISTRO)] = None,
     output_format: Annotated[
         InspectFormat, typer.Option("--format", help="Output format.")

@@ -8,7 +8,6 @@ from typing import Annotated
 
 import typer
 
-from grader.app.cli.completion import offer_marked, offer_students
 from grader.app.cli.options import (
     AnswersOption,
     ByOption,
@@ -31,13 +30,13 @@ def mark(
         typer.Argument(
             metavar="STUDENT",
             help="The id, login, email address or name.",
-            autocompletion=offer_students,
         ),
     ] = "",
     criterion: Annotated[
         str,
         typer.Argument(
-            metavar="CRITERION|grade|deadline", help=_CRITERION, autocompletion=offer_marked
+            metavar="CRITERION|grade|deadline",
+            help=_CRITERION,
         ),
     ] = "",
     points: Annotated[str, typer.Argument(metavar="[POINTS|TIME|excused|-]", help=_POINTS)] = "",

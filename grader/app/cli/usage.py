@@ -10,9 +10,7 @@ from grader.base.errors import NotThereError
 from grader.base.names import closest
 from grader.base.text import enumerated, printable, shell_quoted
 from grader.files.limits import ROBOT_ENDINGS
-from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
-from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
-from grader.report.formats import Format
+from grader.lab.rubric.rubric import shipped_rubrics
 
 # What a command is called elsewhere.
 _COMMANDS = {
@@ -42,7 +40,6 @@ _EXAMPLES = {
 _TAKES_A_RUBRIC = ("grade", "view", "batch")
 _DASHES = "\u2010\u2011\u2012\u2013\u2014\u2212-"  # in place of hyphens, as word processors write
 _QUOTES = "\u2018\u2019\u201c\u201d'\""
-_OUTPUTS = ("--output", "--out", "-o")
 _MAX_COMMANDS = 3  # that are named
 
 
@@ -130,14 +127,27 @@ def usage_message(error: Any, arguments: Sequence[str], root: Any) -> str:
     """
     line = _command_line(arguments, root)
     correction = _correct_hyphens(line) or _correct_command(line)
-    for correct in (_correct_option, _correct_choice, _correct_extra_words):
-        correction = correction or correct(line, error)
+    correction = correction or _correct_option(line, error) or _correct_choice(line, error)
     if correction is not None:
         return f"{correction.why}: `grader {_shown(correction.words)}`"
     if hasattr(error, "possibilities"):
         error.possibilities = None  # guesses by letters alone
+    extra = _extra_words(line, error)
+    if extra:
+        return extra
     what = " ".join(error.format_message().split())
     return f"{what} ({_usage(line, error)})"
+
+
+def _extra_words(line: _CommandLine, error: Any) -> str:
+    """Return that a command with one argument gets several words; empty if that is not so."""
+    arguments = [param for param in line.command.params if param.param_type_name == "argument"]
+    words = [printable(line.words[index]) for index in line.loose]
+    if hasattr(error, "option_name") or len(words) <= len(arguments) or len(arguments) != 1:
+        return ""
+    name = f"{line.command.name} takes only one {arguments[0].metavar.strip('[]')}"
+    batch = " (grader batch grades a class)" if line.command.name == "grade" else ""
+    return f"{name}, not {enumerated(words)}: quote a path that has spaces{batch}"
 
 
 def _command_line(arguments: Sequence[str], root: Any) -> _CommandLine:
@@ -269,11 +279,6 @@ def _correct_option(line: _CommandLine, error: Any) -> _Correction | None:
     if at is None:
         return None
     why = f"there is no option {wrong}"
-    if wrong in _OUTPUTS and "--save" in line.options and at + 1 < len(line.words):
-        name = line.words[at + 1]
-        kinds = [kind for kind in Format if name.endswith(f".{kind.ending}")]
-        if kinds:
-            return _Correction(why, line.replaced(at, at + 2, "--save", f"{kinds[0]}={name}"))
     meant = _find_option(wrong, line)
     if meant is None or not _may_take_value(line, meant, at):
         return None
@@ -296,84 +301,6 @@ def _may_take_value(line: _CommandLine, option: str, at: int) -> bool:
         value = next(iter(line.words[at + 1 :]), "")
     is_choice = value.lower() in choices or closest(value, choices) is not None
     return not choices or not value or is_choice
-
-
-def _correct_extra_words(line: _CommandLine, error: Any) -> _Correction | None:
-    """Write the words that are too many where they belong, or leave them out."""
-    arguments = [param for param in line.command.params if param.param_type_name == "argument"]
-    is_about_option = hasattr(error, "option_name")
-    loose = line.loose
-    if is_about_option or len(loose) <= len(arguments) or len(arguments) != 1:
-        return None
-    for correct in (_correct_repetition, _correct_rubric, _correct_split_value, _correct_spaces):
-        correction = correct(line, loose)
-        if correction is not None:
-            return correction
-    why = f"{line.command.name} takes only one {arguments[0].metavar.strip('[]')}"
-    if line.command.name == "grade":
-        why += " (grader batch grades a class)"
-    there = [index for index in loose if os.path.lexists(line.words[index])]
-    others = {*loose} - {*(there or loose)[:1]}
-    return _Correction(why, [word for n, word in enumerate(line.words) if n not in others])
-
-
-def _correct_repetition(line: _CommandLine, loose: list[int]) -> _Correction | None:
-    """Leave out a command that is typed twice."""
-    word = line.words[loose[0]]
-    if word != line.command.name:
-        return None
-    return _Correction(f"{word!r} stands here twice", line.replaced(loose[0], loose[0] + 1))
-
-
-def _correct_rubric(line: _CommandLine, loose: list[int]) -> _Correction | None:
-    """Write `--rubric` before a rubric that stands alone."""
-    ids = [index for index in loose if line.words[index] in shipped_rubrics()]
-    if not ids or "--rubric" not in line.options:
-        return None
-    words = [*line.replaced(ids[0], ids[0] + 1), "--rubric", line.words[ids[0]]]
-    return _Correction("--rubric names a rubric", words)
-
-
-def _correct_split_value(line: _CommandLine, loose: list[int]) -> _Correction | None:
-    """Write a word in the option before it."""
-    behind_values = (index for index in loose if index >= line.start + 2)
-    for index in behind_values:
-        words = _with_option_value(line, index)
-        if words is not None:
-            return _Correction(f"{line.words[index - 2]} takes one value", words)
-    return None
-
-
-def _correct_spaces(line: _CommandLine, loose: list[int]) -> _Correction | None:
-    """Write quotes around a path with spaces, or hyphens in the name of a criterion."""
-    first, end = loose[0], loose[-1] + 1
-    texts = line.words[first:end]
-    if end - first != len(loose):
-        return None
-    joined, name = " ".join(texts), "-".join(texts)
-    is_path = os.path.lexists(joined) or not any(map(os.path.lexists, texts))
-    if is_path and joined.lower().endswith(_SUBMISSIONS):
-        return _Correction("quote a path that has spaces", line.replaced(first, end, joined))
-    if any(criterion.id == name for criterion in load_rubric(DEFAULT_RUBRIC).criteria):
-        return _Correction("hyphens join the words", line.replaced(first, end, name))
-    return None
-
-
-def _with_option_value(line: _CommandLine, at: int) -> list[str] | None:
-    """Return the words with the word at an index in the option before it, or in one like that."""
-    name, before, word = line.words[at - 2 : at + 1]
-    option = line.options.get(name)
-    if option is None or option.is_flag:
-        return None
-    if before + word in shipped_rubrics():
-        return line.replaced(at - 1, at + 1, before + word)
-    if "=" in (option.metavar or "") and "=" not in before:
-        return line.replaced(at - 1, at + 1, f"{before}={word}")
-    if option.name == "output_format" and "--save" in line.options:
-        return line.replaced(at - 2, at + 1, "--save", f"{before}={word}")
-    if option.multiple and not os.path.lexists(word):
-        return line.replaced(at, at, name)
-    return None
 
 
 def _correct_choice(line: _CommandLine, error: Any) -> _Correction | None:

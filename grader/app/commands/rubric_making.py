@@ -167,7 +167,7 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
             for problem in (
                 problem for problem in submission.urdf.problems if problem.kind.effect == "drops"
             ):
-                warn(f"{problem.location.file_and_line}: {problem.code}: {problem.message}")
+                warn(f"{problem.location.file_and_line}: {problem.label}: {problem.message}")
     others = []
     for file in submission.unused_candidates:
         if not file.is_part and not file.path.endswith(MANIFEST):

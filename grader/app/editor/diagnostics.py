@@ -215,7 +215,7 @@ def _diagnostic(look: Look, ranges: TextRanges, shown: _Shown, at: Location) -> 
     rule = finding.rule
     return lsp.Diagnostic(
         ranges.range(at),
-        shown.message,
+        f"{shown.message} ({rule.name})" if rule.name else shown.message,
         severity=_SEVERITIES[finding.severity],
         code=rule.id,
         code_description=lsp.CodeDescription(rule.page) if rule.page else None,

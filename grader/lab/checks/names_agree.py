@@ -74,7 +74,8 @@ def names_agree(
     if wrong:
         places: dict[str, dict[str, None]] = {}
         for mismatch in wrong:
-            places.setdefault(mismatch.message, {})[mismatch.location.file_and_line] = None
+            text = f"{mismatch.rule.name}: {mismatch.message}"
+            places.setdefault(text, {})[mismatch.location.file_and_line] = None
         (first, (_, *also)), *others = places.items()
         texts = [f"{at}: {message}{_also(more)}" for message, (at, *more) in others]
         message = "; ".join([f"{first}{_also(also)}", *first_lines(texts, _MAX_IN_MESSAGE - 1)])

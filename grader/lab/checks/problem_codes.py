@@ -128,6 +128,6 @@ def _fail_with_problems(reported: Sequence[Problem]) -> Outcome:
     first, more = reported[0], len(reported) - 1
     others = f" (and {counted(more, 'more such problem')})" if more else ""
     outcome = failed(
-        f"{first.code}: {first.message}{others}", first.location, problem=first.message
+        f"{first.label}: {first.message}{others}", first.location, problem=first.message
     )
     return outcome._replace(mistake=f"{first.code}: {first.kind.title}")

@@ -88,7 +88,7 @@ def explain(
         inside += _inside(place, about, source, is_of_link=is_of_looks)
     for problem in problems:
         if problem in at_place or problem in inside:
-            message = f"{outcome.message} ({problem.code}: {problem.message})"
+            message = f"{outcome.message} ({problem.label}: {problem.message})"
             return outcome._replace(
                 message=message, location=problem.location, mistake=mistake, problem=problem.message
             )

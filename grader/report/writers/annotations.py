@@ -76,7 +76,7 @@ def _problem_findings(report: Report, source_of: SourceOf, base: Base) -> Iterat
         where = problem.location
         text = annotation_text([printable(problem.message)], where, base)
         yield Annotation(
-            problem.code, problem.severity, text, annotation_place(where, source_of, base)
+            problem.label, problem.severity, text, annotation_place(where, source_of, base)
         )
 
 

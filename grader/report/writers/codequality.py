@@ -40,8 +40,11 @@ def _issues(findings: Sequence[Finding], base: Base) -> str:
     issues = []
     for finding, fingerprint in zip(findings, fingerprints(findings, base), strict=True):
         path, where = place_in_repository(finding, base)
+        description = message_in_repository(finding, base)
+        if finding.rule.name:
+            description = f"{finding.rule.label}: {description}"
         issue = {
-            "description": message_in_repository(finding, base),
+            "description": description,
             "check_name": finding.rule.id,
             "fingerprint": fingerprint,
             "severity": _SEVERITIES[finding.severity],

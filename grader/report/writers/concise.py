@@ -33,5 +33,5 @@ def _lines(findings: Iterable[Finding], base: Base) -> str:
     for finding in findings:
         where = finding.location
         path = printable(base.here + where.path) or "."
-        text += f"{path}:{where.line}:{where.column}: {finding.rule.id} {finding.message}\n"
+        text += f"{path}:{where.line}:{where.column}: {finding.rule.label} {finding.message}\n"
     return text

@@ -158,7 +158,7 @@ def _add_findings(page: Page, problems: Sequence[Problem]) -> None:
     for problem in problems:
         head = Text(f"{' ' * INDENT}{problem.severity} ", SEVERITY_LOOKS[problem.severity])
         place = printable(problem.location.file_and_line)
-        page.inset(f"{problem.code} {printable(problem.message)} ({place})", "", _NESTED, head)
+        page.inset(f"{problem.label} {printable(problem.message)} ({place})", "", _NESTED, head)
 
 
 def _add_parameters(page: Page, node: GraphNode, most: int | None) -> None:

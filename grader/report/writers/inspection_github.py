@@ -18,7 +18,7 @@ def inspection_github(inspection: Inspection) -> str:
     """
     problems = [
         Annotation(
-            problem.code,
+            problem.label,
             problem.severity,
             annotation_text([printable(problem.message)], problem.location, inspection.base),
             annotation_place(problem.location, inspection.source, inspection.base),

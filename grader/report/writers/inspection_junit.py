@@ -52,7 +52,7 @@ def _counts(findings: list[Finding], passed: int = 0) -> dict[str, str]:
 def _add_case(suite: Any, finding: Finding, inspection: Inspection) -> None:
     path, where = place_in_repository(finding, inspection.base)
     message = message_in_repository(finding, inspection.base)
-    name = f"{finding.rule.id} {message}"
+    name = f"{finding.rule.label} {message}"
     case = etree.SubElement(suite, "testcase", name=name, classname=f"grader.{finding.rule.id}")
     if where is not None:
         case.set("file", path)

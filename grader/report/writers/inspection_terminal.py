@@ -3,6 +3,7 @@
 Text of files is never interpreted as markup or control codes.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from math import inf
 from os.path import commonprefix
@@ -258,6 +259,7 @@ class _ProblemRows:
     def _in_a_row(self, cause: Cause) -> Text:
         """Return an error in one row; a long path without its start."""
         head, message = _name_of(cause), printable(cause.problem.message)
+        head.append(f"{cause.problem.rule} ".lstrip())
         more = f" and {len(cause.others)} more" if cause.others else ""
         room = self._console.width - len(head) - len(more) - _MIN_MESSAGE
         where = _end_of(self._line_of(cause), room)
@@ -265,10 +267,15 @@ class _ProblemRows:
         return shortened(self._console, text)
 
     def _kind_in_a_row(self, kind: CauseKind) -> Text:
-        """Return how many warnings or notes of a kind there are."""
-        problem = kind.problem
-        title = f"{kind.total}: {problem.kind.title}"
-        return shortened(self._console, Text.assemble(_name_of(kind), title))
+        """Return how many warnings or notes of a kind there are, and of which rules."""
+        counts: Counter[str] = Counter()
+        for cause in kind.causes:
+            counts[cause.problem.rule] += len(cause.problems)
+        rules = ", ".join(f"{name} {count}" for name, count in counts.items() if name)
+        text = f"{kind.total}: {rules}"
+        if len(counts) == 1:
+            text = f"{kind.problem.rule} {kind.total}: {kind.problem.kind.title}".lstrip()
+        return shortened(self._console, Text.assemble(_name_of(kind), text))
 
     def _whole(self, cause: Cause) -> Text:
         """Return a problem with its whole message."""
@@ -309,7 +316,8 @@ class _ProblemRows:
     def _inset(self, cause: Cause, where: str) -> Text:
         """Return a message behind its code and place, or below the code if the place is long."""
         console, head = self._console, _name_of(cause)
-        text = Text.assemble((where, "dim"), printable(cause.problem.message))
+        rule = f"{cause.problem.rule} ".lstrip()
+        text = Text.assemble(rule, (where, "dim"), printable(cause.problem.message))
         if len(where.split(" ", maxsplit=1)[0]) < console.width - len(head):
             return block(console, text, len(head), head)
         below = " " * (2 * INDENT)

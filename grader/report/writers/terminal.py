@@ -362,7 +362,7 @@ def _show_files(report: Report, page: Page, most: int) -> None:
 
 def _problem_row(problem: Problem, page: Page) -> Text:
     """Return a problem with its code and place."""
-    name = (f"{problem.code} {problem.severity} ", _LOOKS[problem.severity])
+    name = (f"{problem.label} {problem.severity} ", _LOOKS[problem.severity])
     text = Text.assemble(name, _place(problem.location, page), f": {printable(problem.message)}")
     return block(page.console, text, INDENT, Text())
 

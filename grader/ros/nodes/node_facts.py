@@ -157,35 +157,10 @@ class SynchronisedType(NamedTuple):
     together: tuple[str, ...] = ()
 
 
-CodeRule = Literal[
-    "undefined name",
-    "callback is called",
-    "callback parameters",
-    "wrong call",
-    "no goal state",
-    "rejects goals",
-    "no result",
-    "no response",
-    "used too early",
-    "nothing spins",
-    "no rclpy.init",
-    "waits in a callback",
-    "sleeps in a callback",
-    "destroyed at once",
-    "no listener",
-    "no rotation",
-    "not registered",
-    "no main",
-    "no rclcpp::init",
-    "no constructor",
-    "not activated",
-]
-
-
 class CodeFault(NamedTuple):
     """Why a node stops, or does nothing; it fails no criterion unless it is certain."""
 
-    rule: CodeRule
+    rule: str  # the name of a rule of `workspace/rules/code.py`
     message: str
     location: Location
     related: Location | None = None

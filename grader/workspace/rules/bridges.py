@@ -31,14 +31,10 @@ from grader.workspace.rules.names import (
     warning,
 )
 from grader.workspace.rules.rule_table import (
-    BRIDGE_ARGUMENT,
-    BRIDGE_CLOCK,
-    BRIDGE_DIRECTION,
-    BRIDGE_FILE,
-    BRIDGE_ROW,
-    BRIDGE_TOPIC,
-    BRIDGE_TYPE,
-    SENSOR_TOPIC,
+    NO_COMPANION,
+    NO_TOPIC,
+    SIMILAR,
+    Rule,
 )
 
 _TOPIC_KEYS = ("topic_name", "ros_topic_name", "gz_topic_name", "ign_topic_name")
@@ -70,15 +66,42 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _no_clock(workspace, rows)
 
 
+_BRIDGE_FILE = Rule(
+    "bridge-file",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A file of bridge rows is a list in YAML.",
+    why=(
+        "The bridge cannot read its rows from the file. It ends or bridges nothing, so no topic"
+        " of Gazebo arrives in ROS 2."
+    ),
+    wrong="""
+- ros_topic_name: scan
+ gz_topic_name: scan
+""",
+    right="""
+- ros_topic_name: scan
+  gz_topic_name: scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+""",
+    frame="bridge.yaml",
+    beside={
+        "bridge/rover.launch.py": "",
+    },
+)
+
+
 def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the files that bridges get and that cannot be parsed, or are no lists."""
     for path in bridge_files(workspace):
         tree = workspace.installed.yaml.get(path)
         if isinstance(tree, YamlFault):
-            yield Mismatch(BRIDGE_FILE, f"this is not YAML: {tree}", tree.location)
+            yield Mismatch(_BRIDGE_FILE, f"this is not YAML: {tree}", tree.location)
         elif tree is not None and isinstance(tree.value, dict):
             message = "the file of a bridge is a list (a YAML sequence): begin each row with `- `"
-            yield Mismatch(BRIDGE_FILE, message, tree.location)
+            yield Mismatch(_BRIDGE_FILE, message, tree.location)
 
 
 class _GazeboTopics(NamedTuple):
@@ -160,6 +183,33 @@ def _nameless_sensors(
     return nameless
 
 
+_SENSOR_TOPIC = Rule(
+    "sensor-topic",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "The sensor whose messages a bridge takes has a <topic>.",
+    why=(
+        "Gazebo makes a topic from the names of world, model, link and sensor. The bridge waits"
+        " on another name, and no message arrives in ROS 2."
+    ),
+    wrong='<gazebo reference="base_link"><sensor name="lidar" type="gpu_lidar"/></gazebo>',
+    right="""
+<gazebo reference="base_link">
+  <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
+</gazebo>
+""",
+    frame="rover.urdf",
+    beside={
+        "rover.launch.py": """
+Node(package='ros_gz_bridge', executable='parameter_bridge',
+     arguments=['/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan']),
+""",
+    },
+    at="launch/rover.launch.py",
+)
+
+
 def _without_topic(row: BridgeRow, nameless: Mapping[str, _NamelessSensor]) -> Iterator[Mismatch]:
     """Yield that the only sensor with the messages of a row has no <topic>.
 
@@ -173,7 +223,34 @@ def _without_topic(row: BridgeRow, nameless: Mapping[str, _NamelessSensor]) -> I
         f"nothing publishes {quoted(row.gz)} in Gazebo: the sensor {quoted(sensor.name)} has no "
         f"<topic> ({at.file_and_line})"
     )
-    yield warning(SENSOR_TOPIC, message, row.location, at)
+    yield warning(_SENSOR_TOPIC, message, row.location, at)
+
+
+_BRIDGE_ROW = Rule(
+    "bridge-row",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A row of a bridge has the keys that the bridge needs.",
+    why=(
+        "The bridge prints an error for the row and ignores it. Other rows work, so only this "
+        "topic is missing in ROS 2 or Gazebo."
+    ),
+    wrong="""
+- topic_name: scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type: gz.msgs.LaserScan
+""",
+    right="""
+- topic_name: scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+""",
+    frame="bridge.yaml",
+    beside={
+        "bridge/rover.launch.py": "",
+    },
+)
 
 
 def _incomplete_rows(workspace: Workspace) -> Iterator[Mismatch]:
@@ -189,7 +266,28 @@ def _incomplete_rows(workspace: Workspace) -> Iterator[Mismatch]:
             for key in bridge_table().keys:
                 if row.get(key) is None and row.get(key.replace("gz", "ign")) is None:
                     message = f"the bridge leaves out the row: it has no {key}"
-                    yield Mismatch(BRIDGE_ROW, message, row.location)
+                    yield Mismatch(_BRIDGE_ROW, message, row.location)
+
+
+_BRIDGE_ARGUMENT = Rule(
+    "bridge-argument",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "An argument of a bridge names a topic with its types.",
+    why=(
+        "parameter_bridge prints its usage and ends at the first argument that it cannot parse."
+        " The topics of all other arguments are missing too."
+    ),
+    wrong="Node(package='ros_gz_bridge', executable='parameter_bridge', arguments=['/clock']),",
+    right="""
+Node(
+    package='ros_gz_bridge',
+    executable='parameter_bridge',
+    arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock'],
+),
+""",
+)
 
 
 def _other_arguments(workspace: Workspace) -> Iterator[Mismatch]:
@@ -203,7 +301,37 @@ def _other_arguments(workspace: Workspace) -> Iterator[Mismatch]:
                 "TOPIC@ROS_TYPE[GZ_TYPE"
             )
             is_certain = node.when is True
-            yield Mismatch(BRIDGE_ARGUMENT, message, node.location, is_certain=is_certain)
+            yield Mismatch(_BRIDGE_ARGUMENT, message, node.location, is_certain=is_certain)
+
+
+_BRIDGE_TYPE = Rule(
+    "bridge-type",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A bridge converts the types of its rows, and a row has the type of Gazebo's topic.",
+    why=(
+        "The bridge prints 'Failed to create a bridge for topic', or receives nothing because "
+        "Gazebo publishes another type. No message arrives in ROS 2."
+    ),
+    wrong="""
+Node(
+    package='ros_gz_bridge',
+    executable='parameter_bridge',
+    arguments=['/scan@sensor_msgs/msg/LaserScan[gz.msgs.Image'],
+),
+""",
+    right="""
+Node(
+    package='ros_gz_bridge',
+    executable='parameter_bridge',
+    arguments=['/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan'],
+),
+""",
+    beside={
+        "lidar/rover.urdf": "",
+    },
+)
 
 
 def _exchanged_types(workspace: Workspace) -> Iterator[Mismatch]:
@@ -215,7 +343,7 @@ def _exchanged_types(workspace: Workspace) -> Iterator[Mismatch]:
                 right = f"{match['topic']}@{match['ros']}{match['direction']}{match['gz']}"
                 message = f"the types are exchanged, so nothing is bridged: write {right}"
                 is_certain = node.when is True
-                yield Mismatch(BRIDGE_TYPE, message, node.location, is_certain=is_certain)
+                yield Mismatch(_BRIDGE_TYPE, message, node.location, is_certain=is_certain)
 
 
 def _first_other_argument(node: StartedNode) -> str | None:
@@ -228,6 +356,33 @@ def _first_other_argument(node: StartedNode) -> str | None:
     return None
 
 
+_BRIDGE_DIRECTION = Rule(
+    "bridge-direction",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A row of a bridge goes in the direction of its messages.",
+    why=(
+        "The bridge then waits on the side where nothing publishes. ros2 topic list shows the "
+        "topic, but no message arrives."
+    ),
+    wrong="""
+Node(
+    package='ros_gz_bridge',
+    executable='parameter_bridge',
+    arguments=['/clock@rosgraph_msgs/msg/Clock]gz.msgs.Clock'],
+),
+""",
+    right="""
+Node(
+    package='ros_gz_bridge',
+    executable='parameter_bridge',
+    arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock'],
+),
+""",
+)
+
+
 def _no_direction(row: BridgeRow) -> Mismatch:
     """Return that a row has a direction that no bridge has."""
     meant = closest(row.direction, bridge_table().directions)
@@ -235,7 +390,7 @@ def _no_direction(row: BridgeRow) -> Mismatch:
     message = f"the bridge leaves out the row: it has no direction {quoted(row.direction)}{guess}"
     at = row.direction_location
     either = corrections(row.direction, at, meant)
-    return Mismatch(BRIDGE_DIRECTION, message, at, None, row.is_used, either)
+    return Mismatch(_BRIDGE_DIRECTION, message, at, None, row.is_used, either)
 
 
 def _no_type(workspace: Workspace, row: BridgeRow) -> Iterator[Mismatch]:
@@ -254,7 +409,7 @@ def _no_type(workspace: Workspace, row: BridgeRow) -> Iterator[Mismatch]:
     at = row.ros_type_location
     message = f"the bridge has no type {quoted(written)}; did you mean {meant}?"
     either = corrections(written, at, meant)
-    yield Mismatch(BRIDGE_TYPE, message, at, None, row.is_used, either)
+    yield Mismatch(_BRIDGE_TYPE, message, at, None, row.is_used, either)
 
 
 def bridge_files(workspace: Workspace) -> set[str]:
@@ -307,7 +462,7 @@ def _conversions(row: BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
         f"the bridge does not convert {ros_type} and {row.gz_type or 'an empty type'}; "
         f"write {enumerated(meant, word='or')}"
     )
-    yield Mismatch(BRIDGE_TYPE, message, at, None, row.is_used, either)
+    yield Mismatch(_BRIDGE_TYPE, message, at, None, row.is_used, either)
 
 
 def _clock_to_gazebo(row: BridgeRow) -> Iterator[Mismatch]:
@@ -333,7 +488,7 @@ def _wrong_direction(
     """
     at = row.direction_location
     either = corrections(row.direction, at, right) if at != row.location else ()
-    return Mismatch(BRIDGE_DIRECTION, message, at, related, row.is_used, either)
+    return Mismatch(_BRIDGE_DIRECTION, message, at, related, row.is_used, either)
 
 
 def _opposite_direction(row: BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
@@ -363,7 +518,37 @@ def _type_of_topic(row: BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismat
         message = (
             f"the topic {row.gz} of Gazebo has {types[0]} ({at.file_and_line}), not {row.gz_type}"
         )
-        yield Mismatch(BRIDGE_TYPE, message, row.gz_type_location, at, row.is_used)
+        yield Mismatch(_BRIDGE_TYPE, message, row.gz_type_location, at, row.is_used)
+
+
+_BRIDGE_TOPIC = Rule(
+    "bridge-topic",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "Gazebo has the topic of a row of a bridge.",
+    why=(
+        "The bridge waits for a Gazebo topic without a publisher or reader. ros2 topic list "
+        "shows its ROS topic, but no message arrives."
+    ),
+    wrong="""
+Node(
+    package='ros_gz_bridge',
+    executable='parameter_bridge',
+    arguments=['/scans@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan'],
+),
+""",
+    right="""
+Node(
+    package='ros_gz_bridge',
+    executable='parameter_bridge',
+    arguments=['/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan'],
+),
+""",
+    beside={
+        "lidar/rover.urdf": "",
+    },
+)
 
 
 def _not_there(
@@ -390,7 +575,35 @@ def _not_there(
     )
     is_certain = row.is_used and is_known and len(fitting) == 1
     either = corrections(row.gz, row.location, meant, at)
-    yield Mismatch(BRIDGE_TOPIC, message, row.location, at, is_certain, either)
+    yield Mismatch(_BRIDGE_TOPIC, message, row.location, at, is_certain, either)
+
+
+_BRIDGE_CLOCK = Rule(
+    "bridge-clock",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A bridge takes the clock from Gazebo.",
+    why=(
+        "Without /clock the time of a node with use_sim_time stays 0: timers on its clock never"
+        " fire, and time stamps and tf2 lookups are wrong."
+    ),
+    wrong="""
+Node(package='ros_gz_bridge', executable='parameter_bridge', arguments=[
+    '/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan']),
+Node(package='rover', executable='joystick', parameters=[{'use_sim_time': True}]),
+""",
+    right="""
+Node(package='ros_gz_bridge', executable='parameter_bridge', arguments=[
+    '/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock',
+    '/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan']),
+Node(package='rover', executable='joystick', parameters=[{'use_sim_time': True}]),
+""",
+    beside={
+        "lidar/rover.urdf": "",
+        "joystick.py": "",
+    },
+)
 
 
 def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]:
@@ -408,7 +621,7 @@ def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]
                 f"{node.executable} waits for the time of the simulation, but no bridge takes "
                 "clock from Gazebo"
             )
-            yield Mismatch(BRIDGE_CLOCK, message, sim_time.location, used[0].location)
+            yield Mismatch(_BRIDGE_CLOCK, message, sim_time.location, used[0].location)
             return
 
 

@@ -9,7 +9,10 @@ from grader.ros.xml.parsing import Element
 from grader.workspace.graph.gazebo_topics import roots
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
-from grader.workspace.rules.rule_table import CLASSIC_PLUGIN
+from grader.workspace.rules.rule_table import (
+    NO_WORD,
+    Rule,
+)
 from grader.workspace.rules.used_packages import OF_TESTS
 
 _LIBRARY, _RATE = "libgazebo_ros_", "updateRate"
@@ -37,13 +40,41 @@ def classic_plugin_facts(workspace: Workspace) -> Iterator[Fact]:
                 yield from _wrong_plugin(plugin, library, at)
 
 
+_CLASSIC_PLUGIN = Rule(
+    "classic-plugin",
+    "words",
+    NO_WORD,
+    NO_WORD,
+    "The plugins of Gazebo Classic and their elements are those of ROS 2.",
+    why=(
+        "Gazebo Classic does not load a library of ROS 1, and plugins ignore elements that they"
+        " do not know. Topics, frames and rates keep their defaults."
+    ),
+    wrong="""
+  <gazebo>
+    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+      <robotBaseFrame>base_link</robotBaseFrame>
+    </plugin>
+  </gazebo>
+""",
+    right="""
+  <gazebo>
+    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+      <robot_base_frame>base_link</robot_base_frame>
+    </plugin>
+  </gazebo>
+""",
+    frame="rover.urdf",
+)
+
+
 def _wrong_plugin(plugin: Element, library: str, at: Location) -> Iterator[Mismatch]:
     """Yield that a plugin is one of ROS 1, or has elements of ROS 1."""
     classic = gazebo().classic
     if library in classic.libraries:
         instead = classic.libraries[library]
         message = f"ROS 2 has no plugin {library}, so Gazebo does not load it: use {instead}"
-        yield warning(CLASSIC_PLUGIN, message, at)
+        yield warning(_CLASSIC_PLUGIN, message, at)
         return
     name = library.removeprefix(_LIBRARY).removesuffix(".so")
     given = [child.tag for child in plugin]
@@ -59,4 +90,4 @@ def _wrong_plugin(plugin: Element, library: str, at: Location) -> Iterator[Misma
         unread = enumerated([f"<{tag}>" for tag in written], word="or")
         instead = enumerated([*dict.fromkeys(classic.elements[tag] for tag in written)])
         message = f"{library} of ROS 2 does not read {unread}, as in ROS 1, but {instead}"
-        yield warning(CLASSIC_PLUGIN, message, at)
+        yield warning(_CLASSIC_PLUGIN, message, at)

@@ -28,12 +28,8 @@ from grader.workspace.model.launches import CONTROL_NODE, MANAGER
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    CLOCK_PUBLISHED,
-    JOINT_STATES,
-    NODE_NAME,
-    ONE_JOINT_STATE,
-    ROBOT_PUBLISHED,
-    SIMULATION_TIME,
+    NO_COMPANION,
+    Rule,
 )
 
 _ROBOT_PUBLISHER = "robot_state_publisher"
@@ -67,6 +63,27 @@ def companion_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _wall_time(workspace)
 
 
+_NODE_NAME = Rule(
+    "node-name",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "The nodes of a launch file have different names.",
+    why=(
+        "ros2 node list warns of an exact name that two nodes share. A parameter or service "
+        "request may reach the wrong one of the two."
+    ),
+    wrong="""
+Node(package='turtlesim', executable='turtlesim_node', name='sim'),
+Node(package='turtlesim', executable='turtlesim_node', name='sim'),
+""",
+    right="""
+Node(package='turtlesim', executable='turtlesim_node', name='sim'),
+Node(package='turtlesim', executable='turtlesim_node', name='sim2'),
+""",
+)
+
+
 def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the nodes that a launch file gives a name which it gives another one."""
     first: dict[tuple[int, str], RunningNode] = {}
@@ -80,7 +97,7 @@ def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
                 f"two nodes are named {node.name}: their parameters and services cannot be told "
                 f"apart; the other one is at {before.location.file_and_line}"
             )
-            yield warning(NODE_NAME, message, node.location, before.location)
+            yield warning(_NODE_NAME, message, node.location, before.location)
 
 
 def _broadcasters(workspace: Workspace) -> set[str]:
@@ -90,6 +107,36 @@ def _broadcasters(workspace: Workspace) -> set[str]:
         if controller_row(controller.type.text).publishes_joint_states:
             names.add(controller.name)
     return names
+
+
+_ONE_JOINT_STATE = Rule(
+    "one-joint-state",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "One program publishes the positions of the joints.",
+    why=(
+        "robot_state_publisher uses each message that arrives. The links jump between the "
+        "measured positions and those of the other program in RViz."
+    ),
+    wrong="""
+Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
+Node(package='controller_manager', executable='spawner', arguments=['joint_state_broadcaster']),
+Node(package='joint_state_publisher', executable='joint_state_publisher'),
+""",
+    right="""
+Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
+Node(package='controller_manager', executable='spawner', arguments=['joint_state_broadcaster']),
+""",
+    frame="control/rover.launch.py",
+    beside={
+        "arm/rover.urdf": "",
+        "types/controllers.yaml": """
+joint_state_broadcaster:
+  type: joint_state_broadcaster/JointStateBroadcaster
+""",
+    },
+)
 
 
 def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
@@ -106,7 +153,37 @@ def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
                     f"{node.executable} and the controller {quoted(name)} both publish "
                     "joint_states: the joints jump between their positions"
                 )
-                yield warning(ONE_JOINT_STATE, message, node.location)
+                yield warning(_ONE_JOINT_STATE, message, node.location)
+
+
+_JOINT_STATES = Rule(
+    "joint-states",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "Something publishes the positions of the joints.",
+    why=(
+        "robot_state_publisher publishes no transforms for moving joints. RViz prints 'No "
+        "transform from [...]' for their links and shows the robot incomplete."
+    ),
+    wrong="""
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot}]),
+""",
+    right="""
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot}]),
+Node(package='joint_state_publisher', executable='joint_state_publisher'),
+""",
+    beside={
+        "plain/rover.urdf": """
+<robot name="rover">
+  <link name="base_link"/> <link name="arm"/>
+  <joint name="arm_joint" type="continuous"><parent link="base_link"/><child link="arm"/></joint>
+</robot>
+""",
+    },
+)
 
 
 def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
@@ -132,7 +209,7 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
         "joint_state_broadcaster"
     )
     at = first.location.resolve() if first.location is not None else None
-    yield warning(JOINT_STATES, message, publishers[0].location, at)
+    yield warning(_JOINT_STATES, message, publishers[0].location, at)
 
 
 def _moving_joints(workspace: Workspace) -> list[Joint]:
@@ -172,6 +249,28 @@ def _is_mentioned(workspace: Workspace, words: Sequence[str]) -> bool:
     return any(word in text for text in texts for word in words)
 
 
+_ROBOT_PUBLISHED = Rule(
+    "robot-published",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "robot_state_publisher gives the controller manager the robot.",
+    why=(
+        "The controller manager waits for the topic robot_description and loads no hardware. "
+        "Spawners wait or fail, and nothing moves."
+    ),
+    wrong="Node(package='controller_manager', executable='ros2_control_node'),",
+    right="""
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot}]),
+Node(package='controller_manager', executable='ros2_control_node'),
+""",
+    beside={
+        "arm/rover.urdf": "",
+    },
+)
+
+
 def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield a controller manager that waits for a robot which nothing publishes."""
     managers = []
@@ -189,7 +288,7 @@ def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
             "the controller manager waits for the topic robot_description, which nothing "
             "publishes: start robot_state_publisher"
         )
-        yield warning(ROBOT_PUBLISHED, message, managers[0].location)
+        yield warning(_ROBOT_PUBLISHED, message, managers[0].location)
 
 
 def _sim_time(workspace: Workspace) -> Iterator[Location]:
@@ -199,13 +298,30 @@ def _sim_time(workspace: Workspace) -> Iterator[Location]:
             yield value.location
 
 
+_CLOCK_PUBLISHED = Rule(
+    "clock-published",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "Something publishes the clock of nodes with use_sim_time.",
+    why=(
+        "The time of the nodes stays 0: timers on their clock never fire, and tf2 finds no "
+        "transforms for their messages."
+    ),
+    wrong="""
+Node(package='rplidar_ros', executable='rplidar_node', parameters=[{'use_sim_time': True}]),
+""",
+    right="Node(package='rplidar_ros', executable='rplidar_node'),",
+)
+
+
 def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield that nodes wait for the time of a simulation that nothing publishes."""
     at = next(_sim_time(workspace), None)
     if at is None or _may_have_clock(workspace):
         return
     message = "use_sim_time is true, but nothing publishes /clock: the time of the node stays 0"
-    yield warning(CLOCK_PUBLISHED, message, at)
+    yield warning(_CLOCK_PUBLISHED, message, at)
 
 
 def _may_have_clock(workspace: Workspace) -> bool:
@@ -300,6 +416,29 @@ def _is_told(workspace: Workspace) -> bool:
     return False
 
 
+_SIMULATION_TIME = Rule(
+    "simulation-time",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "The nodes of a simulation use its time.",
+    why=(
+        "Such a node compares simulated stamps with the time of the machine. It takes messages "
+        "and transforms for outdated and ignores them."
+    ),
+    wrong="""
+Node(package='ros_gz_bridge', executable='parameter_bridge',
+     arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock']),
+Node(package='robot_localization', executable='ekf_node'),
+""",
+    right="""
+Node(package='ros_gz_bridge', executable='parameter_bridge',
+     arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock']),
+Node(package='robot_localization', executable='ekf_node', parameters=[{'use_sim_time': True}]),
+""",
+)
+
+
 def _wall_time(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield that nodes compare times in a simulation whose clock they do not use."""
     rows = [row for row in bridge_rows(workspace) if row.is_published and row.ros_type == _CLOCK]
@@ -311,5 +450,5 @@ def _wall_time(workspace: Workspace) -> Iterator[Mismatch]:
                 f"{node.executable} uses the time of the machine, but the simulation has its own "
                 f"clock ({rows[0].location.file_and_line}): give the nodes use_sim_time"
             )
-            yield warning(SIMULATION_TIME, message, node.location, rows[0].location)
+            yield warning(_SIMULATION_TIME, message, node.location, rows[0].location)
             return

@@ -24,8 +24,10 @@ from grader.workspace.rules.names import (
     warning,
 )
 from grader.workspace.rules.rule_table import (
-    COMPONENT_REGISTERED,
-    CONTAINER_STARTED,
+    NO_COMPANION,
+    NO_PROGRAM,
+    SIMILAR,
+    Rule,
 )
 
 _CONTAINERS = "rclcpp_components"
@@ -68,6 +70,36 @@ def _unregistered(
     yield _no_component(owner.name, plugin, component.location, registered, is_open=is_open)
 
 
+_COMPONENT_REGISTERED = Rule(
+    "component-registered",
+    "programs",
+    NO_PROGRAM,
+    SIMILAR,
+    "CMakeLists.txt of the package registers the component that a launch file loads.",
+    why=(
+        "The container reports that it did not find the class, and the node is missing. The "
+        "container and its other components run on."
+    ),
+    wrong="""
+ComposableNodeContainer(
+    package='rclcpp_components', executable='component_container', name='parts', namespace='',
+    composable_node_descriptions=[ComposableNode(package='rover', plugin='rover::Driver')],
+),
+""",
+    right="""
+ComposableNodeContainer(
+    package='rclcpp_components', executable='component_container', name='parts', namespace='',
+    composable_node_descriptions=[ComposableNode(package='rover', plugin='rover::Drive')],
+),
+""",
+    beside={
+        "package.xml": "",
+        "parts/CMakeLists.txt": "",
+        "drive.cpp": "RCLCPP_COMPONENTS_REGISTER_NODE(rover::Drive)",
+    },
+)
+
+
 def _no_component(
     package: str, plugin: str, at: Location, registered: Mapping[str, Location], *, is_open: bool
 ) -> Fact:
@@ -78,11 +110,11 @@ def _no_component(
         related = registered[meant]
         message = f"{message}; did you mean {quoted(meant)} ({related.file_and_line})?"
         either = corrections(plugin, at, meant, related)
-        return Mismatch(COMPONENT_REGISTERED, message, at, related, not is_open, either)
+        return Mismatch(_COMPONENT_REGISTERED, message, at, related, not is_open, either)
     if is_open:
         return Undecided("programs", f"which components {package} has is not evaluated")
     message = f"{message}; it registers {', '.join(registered) or 'none'}"
-    return Mismatch(COMPONENT_REGISTERED, message, at)
+    return Mismatch(_COMPONENT_REGISTERED, message, at)
 
 
 def _registered_in(setup: Installation) -> Mapping[str, Location]:
@@ -97,6 +129,31 @@ def _registered_in(setup: Installation) -> Mapping[str, Location]:
 def _may_register(text: str) -> bool:
     """Return whether a file of CMake may register components whose classes are not read."""
     return _COMPUTED.search(text) is not None or _OTHER_WAY in text
+
+
+_CONTAINER_STARTED = Rule(
+    "container-started",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "The container of a component is started.",
+    why=(
+        "launch waits without end for the load service of the container. The component is never"
+        " loaded, and no error is printed."
+    ),
+    wrong="""
+ComposableNodeContainer(package='rclcpp_components', executable='component_container', name='parts',
+                        namespace='', composable_node_descriptions=[]),
+LoadComposableNodes(target_container='partss', composable_node_descriptions=[
+    ComposableNode(package='image_proc', plugin='image_proc::RectifyNode')]),
+""",
+    right="""
+ComposableNodeContainer(package='rclcpp_components', executable='component_container', name='parts',
+                        namespace='', composable_node_descriptions=[]),
+LoadComposableNodes(target_container='parts', composable_node_descriptions=[
+    ComposableNode(package='image_proc', plugin='image_proc::RectifyNode')]),
+""",
+)
 
 
 def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
@@ -117,7 +174,7 @@ def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
                 f"nothing starts a container {name}, for which launch waits without end; "
                 f"{meant} is started at {at.file_and_line}"
             )
-            yield warning(CONTAINER_STARTED, message, component.loaded_at, at)
+            yield warning(_CONTAINER_STARTED, message, component.loaded_at, at)
 
 
 def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | None:

@@ -37,12 +37,9 @@ from grader.workspace.rules.names import (
     corrections,
 )
 from grader.workspace.rules.rule_table import (
-    CLAIMED_ONCE,
-    CONTROLLER_HARDWARE,
-    CONTROLLER_INTERFACE,
-    CONTROLLER_LIST,
-    CONTROLLER_PARAMETERS,
-    CONTROLLER_TYPE,
+    NO_CONTROLLER,
+    SIMILAR,
+    Rule,
 )
 
 _LIKENESS = 0.85  # of a type to one of another package
@@ -76,6 +73,36 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _no_hardware(workspace)
 
 
+_CONTROLLER_HARDWARE = Rule(
+    "controller-hardware",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "A robot with a controller manager has <ros2_control>.",
+    why=(
+        "The controller manager parses <ros2_control> for its hardware. Without the element it "
+        "has no interfaces, so no controller can move a joint."
+    ),
+    wrong="""
+Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
+""",
+    right="""
+Node(package='rover', executable='motors'),  # or describe the hardware in <ros2_control>
+""",
+    frame="control/rover.launch.py",
+    beside={
+        "arm/controllers.yaml": "",
+        "plain/rover.urdf": """
+<robot name="rover">
+  <link name="base_link"/> <link name="arm"/>
+  <joint name="arm_joint" type="continuous"><parent link="base_link"/><child link="arm"/></joint>
+</robot>
+""",
+        "motors.py": "",
+    },
+)
+
+
 def _no_hardware(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield that a controller manager is started, while no robot has <ros2_control>.
 
@@ -87,8 +114,24 @@ def _no_hardware(workspace: Workspace) -> Iterator[Mismatch]:
     for _, node in workspace.launches.nodes:
         if node.executable == CONTROL_NODE:
             message = "the controller manager is started, but the robot has no <ros2_control>"
-            yield Mismatch(CONTROLLER_HARDWARE, message, node.location)
+            yield Mismatch(_CONTROLLER_HARDWARE, message, node.location)
             return
+
+
+_CONTROLLER_TYPE = Rule(
+    "controller-type",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "The type of a controller is one that a package has.",
+    why=(
+        "pluginlib finds no such class. The controller manager prints 'Loader for controller "
+        "... not found', and the controller is not loaded."
+    ),
+    wrong="joint_state_broadcaster: {type: joint_state_broadcaster/JointStatePublisher}",
+    right="joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}",
+    frame="types/controllers.yaml",
+)
 
 
 def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismatch]:
@@ -112,7 +155,7 @@ def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismat
     is_certain = is_known or near(written, same_class) is not None
     at = controller.type.location
     either = corrections(written, at, meant)
-    yield Mismatch(CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
+    yield Mismatch(_CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
 
 
 def _meant_type(written: str, same_class: Sequence[str], *, is_known: bool) -> str | None:
@@ -143,6 +186,37 @@ def _may_have_type(workspace: Workspace, written: str, *, is_known: bool) -> boo
     return near(package, [kind.partition("/")[0] for kind in controller_types()]) is None
 
 
+_CONTROLLER_PARAMETERS = Rule(
+    "controller-parameters",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "A controller that needs parameters has some.",
+    why=(
+        "Without names of joints or interfaces the controller cannot be configured, or it moves"
+        " nothing. Its spawner reports the failure."
+    ),
+    wrong="""
+controller_manager:
+  ros__parameters:
+    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+""",
+    right="""
+controller_manager:
+  ros__parameters:
+    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+arm_controller:
+  ros__parameters:
+    joints: [arm_joint]
+    command_interfaces: [position]
+""",
+    frame="controllers.yaml",
+    beside={
+        "arm/rover.urdf": "",
+    },
+)
+
+
 def _no_parameters(
     workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]
 ) -> Iterator[Mismatch]:
@@ -157,7 +231,32 @@ def _no_parameters(
             f"{controller.name} with ros__parameters"
         )
         either = _section_corrections(workspace, controller, sections)
-        yield Mismatch(CONTROLLER_PARAMETERS, message, controller.location, corrections=either)
+        yield Mismatch(_CONTROLLER_PARAMETERS, message, controller.location, corrections=either)
+
+
+_CONTROLLER_LIST = Rule(
+    "controller-list",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "A parameter of a controller that needs a list has one.",
+    why=(
+        "The controller declares a list, so a string raises a parameter type exception. The "
+        "controller is not loaded, and its spawner ends with an error."
+    ),
+    wrong="""
+joints: arm_joint
+command_interfaces: [position]
+""",
+    right="""
+joints: [arm_joint]
+command_interfaces: [position]
+""",
+    frame="gains/controllers.yaml",
+    beside={
+        "arm/rover.urdf": "",
+    },
+)
 
 
 def _no_list(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
@@ -169,7 +268,32 @@ def _no_list(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
                 f"{controller.name}.{key} is given a string; the controller stops without a "
                 f"list: [{given.text}]"
             )
-            yield Mismatch(CONTROLLER_LIST, message, given.location)
+            yield Mismatch(_CONTROLLER_LIST, message, given.location)
+
+
+_CLAIMED_ONCE = Rule(
+    "claimed-once",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "A controller claims each command interface once.",
+    why=(
+        "The resource manager hands out each command interface once. The second claim raises an"
+        " error, and the controller does not become active."
+    ),
+    wrong="""
+joints: [arm_joint, arm_joint]
+command_interfaces: [position]
+""",
+    right="""
+joints: [arm_joint]
+command_interfaces: [position]
+""",
+    frame="gains/controllers.yaml",
+    beside={
+        "arm/rover.urdf": "",
+    },
+)
 
 
 def _claimed_twice(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
@@ -191,7 +315,7 @@ def _claimed_twice(controller: Controller, section: YamlNode) -> Iterator[Mismat
                     f"{controller.name} claims the command interface {name} twice "
                     f"({before.file_and_line})"
                 )
-                yield Mismatch(CLAIMED_ONCE, message, joint.location, before)
+                yield Mismatch(_CLAIMED_ONCE, message, joint.location, before)
 
 
 def _section_corrections(
@@ -247,6 +371,31 @@ def needed_interfaces(workspace: Workspace) -> frozenset[str]:
     return frozenset(needed)
 
 
+_CONTROLLER_INTERFACE = Rule(
+    "controller-interface",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "<ros2_control> has the command interfaces that a controller needs.",
+    why=(
+        "The controller manager does not activate a controller whose interfaces are missing. "
+        "Its spawner ends with an error, and the joints do not move."
+    ),
+    wrong="""
+joints: [arm_joint]
+command_interfaces: [velocity]
+""",
+    right="""
+joints: [arm_joint]
+command_interfaces: [position]
+""",
+    frame="gains/controllers.yaml",
+    beside={
+        "arm/rover.urdf": "",
+    },
+)
+
+
 def _no_interface(
     workspace: Workspace, controller: Controller, section: YamlNode
 ) -> Iterator[Mismatch]:
@@ -267,7 +416,7 @@ def _no_interface(
             yield from _missing_interfaces(workspace, joint, needed, message, interfaces[name])
         elif are_comparable and needed and _are_all_joints(workspace, robots, [name]):
             text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
-            yield Mismatch(CONTROLLER_INTERFACE, text, joint.location)
+            yield Mismatch(_CONTROLLER_INTERFACE, text, joint.location)
 
 
 def _beside(workspace: Workspace, controller: Controller, section: YamlNode) -> YamlNode:
@@ -301,7 +450,7 @@ def _no_state(
                 f"{controller.name} needs the state interface {lacking[0]}/{kind.text}, which "
                 "<ros2_control> does not have"
             )
-            yield Mismatch(CONTROLLER_INTERFACE, text, kind.location)
+            yield Mismatch(_CONTROLLER_INTERFACE, text, kind.location)
 
 
 def _are_all_joints(
@@ -328,7 +477,7 @@ def _missing_interfaces(
         if missing not in offered and not may_be_offered(workspace, missing):
             either = corrections(missing, joint.location, near(missing, offered), at)
             text = f"{message}/{missing}; {there}"
-            yield Mismatch(CONTROLLER_INTERFACE, text, joint.location, at, corrections=either)
+            yield Mismatch(_CONTROLLER_INTERFACE, text, joint.location, at, corrections=either)
 
 
 def _action_facts(workspace: Workspace) -> Iterator[Fact]:

@@ -18,7 +18,13 @@ from grader.workspace.rules.names import (
     cost_of_guess,
     warning,
 )
-from grader.workspace.rules.rule_table import BUILD_ORDER, DEPENDENCY_DECLARED, DEPENDENCY_KIND
+from grader.workspace.rules.rule_table import (
+    BUILT_LATER,
+    FORM,
+    LENT,
+    NO_DEPENDENCY,
+    Rule,
+)
 from grader.workspace.rules.used_packages import PackageUse, used_packages
 
 # Under which other names package.xml may declare the library of a package: keys of rosdep, and
@@ -65,6 +71,37 @@ def _is_sought_here(required: FoundPackage) -> bool:
     return is_sure and not is_released(required.name)
 
 
+_BUILD_ORDER = Rule(
+    "build-order",
+    "dependencies",
+    BUILT_LATER,
+    BUILT_LATER,
+    "package.xml declares the packages of the workspace that CMake needs.",
+    why=(
+        "colcon may build the other package later, and find_package() then stops a clean build."
+        " In a workspace that was built before, the mistake is hidden."
+    ),
+    wrong="<depend>rclcpp</depend>",
+    right="<depend>wheels</depend>",
+    frame="package.xml",
+    beside={
+        "CMakeLists.txt": "find_package(wheels REQUIRED)",
+        "../wheels/package.xml": """
+<package format="3">
+  <name>wheels</name>
+  <version>1.0.0</version>
+  <description>A part of a rover.</description>
+  <maintainer email="a@example.com">A</maintainer>
+  <license>MIT</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+""",
+    },
+    at="rover/CMakeLists.txt",
+)
+
+
 def _built_before(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
     """Yield the packages of the workspace that CMake needs, and that colcon may build later.
 
@@ -86,7 +123,7 @@ def _built_before(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
             f"stops; add <depend>{required.name}</depend>"
         )
         at, start = setup.location(required.at), manifest.name_location
-        yield Mismatch(BUILD_ORDER, message, at, start, word=required.name)
+        yield Mismatch(_BUILD_ORDER, message, at, start, word=required.name)
 
 
 def _reached(workspace: Workspace, package: Package) -> set[str]:
@@ -101,6 +138,26 @@ def _reached(workspace: Workspace, package: Package) -> set[str]:
                 inner = package.find(name)
                 pending += [inner] if inner is not None else []
     return reached
+
+
+DEPENDENCY_DECLARED = Rule(
+    "dependency-declared",
+    "dependencies",
+    NO_DEPENDENCY,
+    LENT,
+    "package.xml declares the packages that the files of the package use.",
+    why=(
+        "rosdep installs and colcon builds first only what is declared. On a new machine or in "
+        "CI the build or launch file stops at the missing package."
+    ),
+    wrong="<exec_depend>rviz2</exec_depend>",
+    right="<exec_depend>turtlesim</exec_depend>",
+    frame="python/package.xml",
+    beside={
+        "rover.launch.py": "Node(package='turtlesim', executable='turtlesim_node'),",
+    },
+    at="launch/rover.launch.py",
+)
 
 
 def _undeclared(
@@ -139,6 +196,31 @@ def _undeclared(
         yield wrong._replace(word=name, lacked=lacked, tag=use.tag)
 
 
+_DEPENDENCY_KIND = Rule(
+    "dependency-kind",
+    "builds",
+    FORM,
+    FORM,
+    "package.xml declares what a build needs for it, and what a run needs for that.",
+    why=(
+        "rosdep and the build farm can install build and run dependencies apart. A clean build "
+        "or an installed package may then lack this one."
+    ),
+    wrong="""
+<exec_depend>rclcpp</exec_depend>
+<depend>rclcpp_components</depend>
+""",
+    right="""
+<depend>rclcpp</depend>
+<depend>rclcpp_components</depend>
+""",
+    frame="package.xml",
+    beside={
+        "CMakeLists.txt": "",
+    },
+)
+
+
 def _of_other_kind(
     package: Package, manifest: Manifest, uses: Sequence[PackageUse]
 ) -> Iterator[Mismatch]:
@@ -167,7 +249,7 @@ def _of_other_kind(
             f"its {other} needs it: write <depend>{name}</depend>"
         )
         said.add(name)
-        yield warning(DEPENDENCY_KIND, message, places[name], use.location)
+        yield warning(_DEPENDENCY_KIND, message, places[name], use.location)
 
 
 def _guess(package: Package, manifest: Manifest, name: str, meant: str | None) -> str:

@@ -32,11 +32,9 @@ from grader.workspace.rules.names import (
     warning,
 )
 from grader.workspace.rules.rule_table import (
-    FILE_INSTALLED,
-    FILE_PACKAGE,
-    LAUNCH_FILE_NAME,
-    MAP_IMAGE,
-    WORLD_MODEL,
+    NO_FILE,
+    SIMILAR,
+    Rule,
 )
 
 # A path ends at a quote, a tag or a space, in YAML's flow style and in a substitution also at a
@@ -262,6 +260,30 @@ def _fault_of(workspace: Workspace, named: PathInFile) -> Iterator[Fact]:
         yield _not_there(owner, target, at, is_output=named.is_output, is_absent=is_absent)
 
 
+_FILE_PACKAGE = Rule(
+    "file-package",
+    "files",
+    NO_FILE,
+    SIMILAR,
+    "The package of a path exists.",
+    why=(
+        "get_package_share_directory() raises PackageNotFoundError for an unknown package. A "
+        "package:// path in it leads to no file, so a mesh or calibration is missing."
+    ),
+    wrong="""
+Node(package='usb_cam', executable='usb_cam_node_exe',
+     parameters=[{'camera_info_url': 'package://rovr/config/a.yaml'}]),
+""",
+    right="""
+Node(package='usb_cam', executable='usb_cam_node_exe',
+     parameters=[{'camera_info_url': 'package://rover/config/a.yaml'}]),
+""",
+    beside={
+        "a.yaml": "camera_name: front",
+    },
+)
+
+
 def _no_package(workspace: Workspace, named: PathInFile) -> Iterator[Mismatch]:
     """Yield that the package of a path is a misspelt one of the workspace.
 
@@ -273,9 +295,24 @@ def _no_package(workspace: Workspace, named: PathInFile) -> Iterator[Mismatch]:
     meant = near(name, [other.name for other in workspace.packages])
     if meant is not None and not package.depends_on(name):
         message = f"there is no package {name!r}; did you mean {meant!r}?"
-        yield Mismatch(FILE_PACKAGE, message, at, corrections=corrections(name, at, meant))
+        yield Mismatch(_FILE_PACKAGE, message, at, corrections=corrections(name, at, meant))
     elif rest.startswith(_LAUNCH_FOLDER):
         yield from _misspelt_launch_file(name, rest.removeprefix(_LAUNCH_FOLDER), at)
+
+
+_LAUNCH_FILE_NAME = Rule(
+    "launch-file-name",
+    "files",
+    SIMILAR,
+    SIMILAR,
+    "An included launch file of a well-known package exists.",
+    why=(
+        "ros2 launch looks for the file in the share folder of the package. It stops with an "
+        "error when the file is not there."
+    ),
+    wrong="IncludeLaunchDescription(os.path.join(gazebo, 'launch', 'gz_sever.launch.py')),",
+    right="IncludeLaunchDescription(os.path.join(gazebo, 'launch', 'gz_server.launch.py')),",
+)
 
 
 def _misspelt_launch_file(package: str, file: str, at: Location) -> Iterator[Mismatch]:
@@ -292,7 +329,32 @@ def _misspelt_launch_file(package: str, file: str, at: Location) -> Iterator[Mis
         meant = f"{stem}.{ending}"
         message = f"{package} is not known to have a launch file {file!r}; did you mean {meant!r}?"
         either = corrections(file, at, meant)
-        yield warning(LAUNCH_FILE_NAME, message, at)._replace(corrections=either)
+        yield warning(_LAUNCH_FILE_NAME, message, at)._replace(corrections=either)
+
+
+FILE_INSTALLED = Rule(
+    "file-installed",
+    "files",
+    NO_FILE,
+    SIMILAR,
+    "A build installs each file at the path that another file names.",
+    why=(
+        "Programs look in the share folder of the install space: an include stops ros2 launch "
+        "with an error, a missing mesh is not shown, and RViz opens its default view."
+    ),
+    wrong="""
+Node(
+    package='rviz2', executable='rviz2',
+    arguments=['-d', os.path.join(share, 'rviz', 'rover_view.rviz')],
+),
+""",
+    right="""
+Node(
+    package='rviz2', executable='rviz2',
+    arguments=['-d', os.path.join(share, 'rviz', 'rover.rviz')],
+),
+""",
+)
 
 
 def _not_there(
@@ -386,6 +448,31 @@ def _install_corrections(setup: Installation, file: str, start: Location) -> tup
     return ()
 
 
+_MAP_IMAGE = Rule(
+    "map-image",
+    "files",
+    NO_FILE,
+    SIMILAR,
+    "The image of a map exists.",
+    why=(
+        "map_server fails to load the map when it is configured. The lifecycle manager then "
+        "aborts the start of Nav2, and RViz shows no map."
+    ),
+    wrong="""
+image: rom.pgm
+resolution: 0.05
+""",
+    right="""
+image: room.pgm
+resolution: 0.05
+""",
+    frame="room.yaml",
+    beside={
+        "room.pgm": "P2 1 1 255 0",
+    },
+)
+
+
 def _map_images(workspace: Workspace) -> Iterator[Fact]:
     """Yield the images of maps that are not there."""
     files = workspace.tree.files
@@ -403,7 +490,26 @@ def _map_images(workspace: Workspace) -> Iterator[Fact]:
         guess = f"; did you mean {meant!r}?" if meant else ""
         message = f"the image of the map, {image.text!r}, does not exist{guess}"
         either = corrections(name, image.location, meant)
-        yield Mismatch(MAP_IMAGE, message, image.location, corrections=either)
+        yield Mismatch(_MAP_IMAGE, message, image.location, corrections=either)
+
+
+_WORLD_MODEL = Rule(
+    "world-model",
+    "files",
+    NO_FILE,
+    SIMILAR,
+    "The models that a world includes exist.",
+    why=(
+        "Gazebo prints that it is unable to find the URI of the include, and the model is "
+        "missing in the simulation."
+    ),
+    wrong="<include><uri>model://crates</uri></include>",
+    right="<include><uri>model://crate</uri></include>",
+    frame="world.sdf",
+    beside={
+        "crate/model.sdf": '<sdf version="1.9"><model name="crate"/></sdf>',
+    },
+)
 
 
 def _models(workspace: Workspace) -> Iterator[Fact]:
@@ -424,4 +530,4 @@ def _models(workspace: Workspace) -> Iterator[Fact]:
             if meant is not None:
                 at = file.location(element)
                 message = f"there is no model {name!r}; did you mean {meant!r}?"
-                yield Mismatch(WORLD_MODEL, message, at, corrections=corrections(name, at, meant))
+                yield Mismatch(_WORLD_MODEL, message, at, corrections=corrections(name, at, meant))

@@ -20,7 +20,8 @@ from grader.workspace.model.under_arguments import may_vary
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    FOOTPRINT_SIZE,
+    OTHER_VALUE,
+    Rule,
 )
 
 _DIRECTIONS = 36  # horizontal directions in which the robot is measured
@@ -73,6 +74,25 @@ def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
             yield _too_small(room, robots[0], beyond[0])
 
 
+_FOOTPRINT_SIZE = Rule(
+    "footprint-size",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "The footprint of a costmap holds the robot.",
+    why=(
+        "Nav2 plans for a robot that is smaller than the real one. It drives through gaps that "
+        "are too narrow, and hits obstacles."
+    ),
+    wrong="robot_radius: 0.1",
+    right="robot_radius: 0.4",
+    frame="costmap.yaml",
+    beside={
+        "lidar/rover.urdf": "",
+    },
+)
+
+
 def _too_small(room: _Room, robot: KnownRobot, beyond: _Reach) -> Mismatch:
     """Return that a link of a robot reaches beyond an area."""
     message = (
@@ -81,7 +101,7 @@ def _too_small(room: _Room, robot: KnownRobot, beyond: _Reach) -> Mismatch:
     )
     location = robot.robot.link(beyond.link).location
     at = location.resolve() if location is not None else None
-    return warning(FOOTPRINT_SIZE, message, room.location, at)
+    return warning(_FOOTPRINT_SIZE, message, room.location, at)
 
 
 def _rooms(workspace: Workspace) -> Iterator[_Room]:

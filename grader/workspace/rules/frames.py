@@ -40,8 +40,9 @@ from grader.workspace.rules.names import (
     cost_of_guess,
 )
 from grader.workspace.rules.rule_table import (
-    FRAME_PARENT,
-    ROOT_FRAME,
+    NO_FRAME,
+    SIMILAR,
+    Rule,
 )
 
 _MIN_OF_ROBOT = 2  # joints that a file names, from which on it is for another robot
@@ -277,6 +278,38 @@ class _NamedFrame(NamedTuple):
     compared: ComparedRobots
 
 
+_ROOT_FRAME = Rule(
+    "root-frame",
+    "frames",
+    NO_FRAME,
+    SIMILAR,
+    "A frame that code publishes is not a misspelling of the root of the robot.",
+    why=(
+        "The odometry and the robot are then two trees. tf2 finds no transform from odom to a "
+        "sensor, and RViz cannot show the robot in odom."
+    ),
+    wrong="""
+geometry_msgs::msg::TransformStamped t;
+t.header.frame_id = "odom";
+t.child_frame_id = "base_lnk";
+t.transform.rotation.w = 1.0;
+sender_->sendTransform(t);
+""",
+    right="""
+geometry_msgs::msg::TransformStamped t;
+t.header.frame_id = "odom";
+t.child_frame_id = "base_link";
+t.transform.rotation.w = 1.0;
+sender_->sendTransform(t);
+""",
+    frame="send/talk.cpp",
+    beside={
+        "package.xml": "",
+        "talk/CMakeLists.txt": "",
+    },
+)
+
+
 def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> Iterator[Mismatch]:
     """Yield frames that are published, and are like the root of a robot that nothing places.
 
@@ -301,7 +334,7 @@ def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> It
         )
         either = corrections(each.name, at, meant, roots[meant])
         is_certain = each.node.when is True and len(robots) == 1
-        yield Mismatch(ROOT_FRAME, message, at, roots[meant], is_certain, corrections=either)
+        yield Mismatch(_ROOT_FRAME, message, at, roots[meant], is_certain, corrections=either)
 
 
 def _is_static(node: StartedNode) -> bool:
@@ -337,6 +370,36 @@ def _frames_of_static(node: StartedNode) -> tuple[str, str] | None:
     return parent, child
 
 
+_FRAME_PARENT = Rule(
+    "frame-parent",
+    "frames",
+    NO_FRAME,
+    SIMILAR,
+    "A link of the robot gets no second parent.",
+    why=(
+        "tf2 keeps one parent of each frame, that of the last message. The link jumps between "
+        "two places, or is no longer connected to the robot."
+    ),
+    wrong="""
+Node(
+    package='tf2_ros',
+    executable='static_transform_publisher',
+    arguments=['--frame-id', 'map', '--child-frame-id', 'arm'],
+),
+""",
+    right="""
+Node(
+    package='tf2_ros',
+    executable='static_transform_publisher',
+    arguments=['--frame-id', 'map', '--child-frame-id', 'base_link'],
+),
+""",
+    beside={
+        "arm/rover.urdf": "",
+    },
+)
+
+
 def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Mismatch]:
     """Yield static transforms that give a link of the robot a second parent.
 
@@ -356,7 +419,7 @@ def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[M
             )
             is_certain = node.when is True and len(robots) == 1
             at = _place(joint.location)
-            yield Mismatch(FRAME_PARENT, message, node.location, at, is_certain=is_certain)
+            yield Mismatch(_FRAME_PARENT, message, node.location, at, is_certain=is_certain)
 
 
 def _is_of_absent_robot(workspace: Workspace, path: str, values: Sequence[YamlValue]) -> bool:

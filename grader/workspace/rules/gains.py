@@ -12,7 +12,8 @@ from grader.workspace.graph.started_controllers import defined_controllers
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    GAIN_SET,
+    MOVES_NOTHING,
+    Rule,
 )
 
 
@@ -62,9 +63,36 @@ def _texts(given: NodeParameters, name: str) -> list[str]:
     return [text for text in value if isinstance(text, str)]
 
 
+_GAIN_SET = Rule(
+    "gain-set",
+    "effects",
+    MOVES_NOTHING,
+    MOVES_NOTHING,
+    "A controller that computes efforts or velocities with gains has gains.",
+    why=(
+        "All gains are 0 by default, so each command is 0. The controller is active and accepts"
+        " trajectories, but nothing moves."
+    ),
+    wrong="""
+joints: [arm_joint]
+command_interfaces: [effort]
+""",
+    right="""
+joints: [arm_joint]
+command_interfaces: [effort]
+gains: {arm_joint: {p: 20.0, d: 1.0}}
+""",
+    frame="gains/controllers.yaml",
+    beside={
+        "arm/rover.urdf": "",
+        "spawn/rover.launch.py": "",
+    },
+)
+
+
 def _moves_nothing(controller: str, lack: _LackingGains) -> Mismatch:
     message = (
         f"{controller} commands the {lack.interface} of {quoted(lack.joint)} without gains, so it "
         f"moves nothing: give it gains.{lack.joint}.p"
     )
-    return warning(GAIN_SET, message, lack.location)
+    return warning(_GAIN_SET, message, lack.location)

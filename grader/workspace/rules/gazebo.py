@@ -20,13 +20,12 @@ from grader.workspace.graph.started_worlds import started_worlds
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch, corrections, warning
 from grader.workspace.rules.rule_table import (
-    BRIDGE_TOPICS,
-    CREATE_OPTION,
-    CREATED_FROM,
-    CREATED_TOPIC,
-    CREATED_WORLD,
-    SENSOR_SYSTEM,
-    SIMULATION_STARTED,
+    NO_COMPANION,
+    NO_PARAMETER,
+    NO_TOPIC,
+    NO_WORD,
+    SIMILAR,
+    Rule,
 )
 
 _SIMULATION = "ros_gz_sim"
@@ -53,6 +52,35 @@ def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _bridges(workspace)
 
 
+_SIMULATION_STARTED = Rule(
+    "simulation-started",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "Something starts the Gazebo in which a robot is created.",
+    why=(
+        "'create' waits for a service of Gazebo that nothing offers. No robot appears, and "
+        "nodes that need /clock wait too."
+    ),
+    wrong="""
+DeclareLaunchArgument('world', default_value=os.path.join(share, 'worlds', 'world.sdf')),
+Node(package='ros_gz_sim', executable='create', arguments=['-string', robot]),
+""",
+    right="""
+IncludeLaunchDescription(
+    os.path.join(gazebo, 'launch', 'gz_sim.launch.py'),
+    launch_arguments={'gz_args': os.path.join(share, 'worlds', 'world.sdf')}.items(),
+),
+Node(package='ros_gz_sim', executable='create', arguments=['-string', robot]),
+""",
+    beside={
+        "world.sdf": """
+<plugin filename="gz-sim-user-commands-system" name="gz::sim::systems::UserCommands"/>
+""",
+    },
+)
+
+
 def _created_without_gazebo(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield that a robot is created, and that no launch file starts Gazebo with its world.
 
@@ -61,12 +89,42 @@ def _created_without_gazebo(workspace: Workspace) -> Iterator[Mismatch]:
     creators = [node for _, node in workspace.launches.nodes if _is_creator(node) and node.when]
     if creators and not started_worlds(workspace).may_start:
         message = "no launch file starts Gazebo, for which create waits"
-        yield warning(SIMULATION_STARTED, message, creators[0].location)
+        yield warning(_SIMULATION_STARTED, message, creators[0].location)
 
 
 def _is_creator(node: StartedNode) -> bool:
     """Return whether a node creates a robot in the simulation."""
     return node.package == _SIMULATION and node.executable == "create"
+
+
+_SENSOR_SYSTEM = Rule(
+    "sensor-system",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A world has the systems that its sensors need.",
+    why=(
+        "Gazebo updates a sensor only if the world loads the system for its type. Without it "
+        "the sensor publishes nothing, and RViz shows no data."
+    ),
+    wrong='<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>',
+    right="""
+<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>
+<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>
+""",
+    frame="world.sdf",
+    beside={
+        "lidar/rover.urdf": "",
+        "rover.launch.py": """
+IncludeLaunchDescription(
+    os.path.join(gazebo, 'launch', 'gz_sim.launch.py'),
+    launch_arguments={'gz_args': os.path.join(share, 'worlds', 'world.sdf')}.items(),
+),
+Node(package='ros_gz_sim', executable='create', arguments=['-string', robot]),
+""",
+    },
+    at="worlds/world.sdf",
+)
 
 
 def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Iterator[Mismatch]:
@@ -90,7 +148,7 @@ def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Ite
                 f"the world has no plugin gz::sim::systems::{system}, so the sensor "
                 f"{quoted(sensor.get('name', ''))} ({at.file_and_line}) publishes nothing"
             )
-            yield Mismatch(SENSOR_SYSTEM, message, file.location(world), at)
+            yield Mismatch(_SENSOR_SYSTEM, message, file.location(world), at)
 
 
 def _sensors_in_world(workspace: Workspace, file: XmlFile) -> Iterator[tuple[Element, Location]]:
@@ -114,6 +172,36 @@ def _values_of_options(node: StartedNode) -> Mapping[str, str]:
     return options
 
 
+_CREATED_WORLD = Rule(
+    "created-world",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A robot is created in the world that Gazebo runs.",
+    why=(
+        "'create' calls a service of the named world, which Gazebo does not offer. It waits or "
+        "fails, and no robot appears in the simulation."
+    ),
+    wrong="""
+IncludeLaunchDescription(
+    os.path.join(gazebo, 'launch', 'gz_sim.launch.py'),
+    launch_arguments={'gz_args': os.path.join(share, 'worlds', 'world.sdf')}.items(),
+),
+Node(package='ros_gz_sim', executable='create', arguments=['-world', 'feild', '-string', robot]),
+""",
+    right="""
+IncludeLaunchDescription(
+    os.path.join(gazebo, 'launch', 'gz_sim.launch.py'),
+    launch_arguments={'gz_args': os.path.join(share, 'worlds', 'world.sdf')}.items(),
+),
+Node(package='ros_gz_sim', executable='create', arguments=['-world', 'field', '-string', robot]),
+""",
+    beside={
+        "world.sdf": '<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>',
+    },
+)
+
+
 def _created_in_world(node: StartedNode, worlds: Mapping[str, XmlFile]) -> Iterator[Mismatch]:
     """Yield that a robot is created in another world than the one that launch files name.
 
@@ -129,7 +217,7 @@ def _created_in_world(node: StartedNode, worlds: Mapping[str, XmlFile]) -> Itera
     )
     at = file.location(next(file.root.iterchildren("world")))
     either = corrections(wanted, node.location, world)
-    yield Mismatch(CREATED_WORLD, message, node.location, at, corrections=either)
+    yield Mismatch(_CREATED_WORLD, message, node.location, at, corrections=either)
 
 
 def _options_given(node: StartedNode) -> list[str] | None:
@@ -154,6 +242,27 @@ def _options_given(node: StartedNode) -> list[str] | None:
     return given
 
 
+_CREATE_OPTION = Rule(
+    "create-option",
+    "words",
+    NO_WORD,
+    NO_WORD,
+    "The program that creates a robot in Gazebo has the given options.",
+    why=(
+        "The program 'create' reports no unknown options. The robot appears with another name "
+        "or at the origin of the world."
+    ),
+    wrong="""
+Node(package='ros_gz_sim', executable='create',
+     arguments=['-topic', 'robot_description', '-entity', 'rover']),
+""",
+    right="""
+Node(package='ros_gz_sim', executable='create',
+     arguments=['-topic', 'robot_description', '-name', 'rover']),
+""",
+)
+
+
 def _unknown_options(node: StartedNode) -> Iterator[Mismatch]:
     """Yield the options that the program that creates robots does not have, and ignores."""
     for name in _options_given(node) or ():
@@ -163,7 +272,24 @@ def _unknown_options(node: StartedNode) -> Iterator[Mismatch]:
         meant = create_table().older.get(name) or similar
         guess = f"; did you mean -{meant}?" if meant else ""
         message = f"create has no option -{name}, and ignores it{guess}"
-        yield warning(CREATE_OPTION, message, node.location)
+        yield warning(_CREATE_OPTION, message, node.location)
+
+
+_CREATED_FROM = Rule(
+    "created-from",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "The program that creates a robot in Gazebo gets its source.",
+    why=(
+        "The program 'create' prints an error and ends, so no robot appears in Gazebo. Spawners"
+        " that wait for its controller manager then wait too."
+    ),
+    wrong="Node(package='ros_gz_sim', executable='create', arguments=['-name', 'rover']),",
+    right="""
+Node(package='ros_gz_sim', executable='create', arguments=['-name', 'rover', '-string', robot]),
+""",
+)
 
 
 def _created_from_nothing(node: StartedNode) -> Iterator[Mismatch]:
@@ -173,7 +299,30 @@ def _created_from_nothing(node: StartedNode) -> Iterator[Mismatch]:
         return
     sources = enumerated([f"-{name}" for name in create_table().sources], word="or")
     message = f"create ends with an error: it needs {sources}"
-    yield Mismatch(CREATED_FROM, message, node.location, is_certain=node.when is True)
+    yield Mismatch(_CREATED_FROM, message, node.location, is_certain=node.when is True)
+
+
+_CREATED_TOPIC = Rule(
+    "created-topic",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A robot is created from the topic that robot_state_publisher has.",
+    why=(
+        "'create' prints 'Waiting messages on topic' again and again, because nothing publishes"
+        " the description there. No robot appears in Gazebo."
+    ),
+    wrong="""
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot}]),
+Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'description']),
+""",
+    right="""
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot}]),
+Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'robot_description']),
+""",
+)
 
 
 def _created_from_topic(workspace: Workspace, node: StartedNode) -> Iterator[Mismatch]:
@@ -196,7 +345,28 @@ def _created_from_topic(workspace: Workspace, node: StartedNode) -> Iterator[Mis
         meant, at = next(iter(published.items()))
         message = f"the robot is created from {name}, but robot_state_publisher publishes {meant}"
         either = corrections(topic, node.location, meant.strip("/"))
-        yield Mismatch(CREATED_TOPIC, message, node.location, at, corrections=either)
+        yield Mismatch(_CREATED_TOPIC, message, node.location, at, corrections=either)
+
+
+_BRIDGE_TOPICS = Rule(
+    "bridge-topics",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A bridge has topics.",
+    why=(
+        "The program passes no message between Gazebo and ROS 2: no sensor data arrive, and "
+        "commands move nothing."
+    ),
+    wrong="Node(package='ros_gz_bridge', executable='parameter_bridge'),",
+    right="""
+Node(
+    package='ros_gz_bridge',
+    executable='parameter_bridge',
+    arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock'],
+),
+""",
+)
 
 
 def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
@@ -209,4 +379,4 @@ def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
                 message = (
                     "the bridge has no topics: neither arguments, nor the parameter config_file"
                 )
-                yield Mismatch(BRIDGE_TOPICS, message, node.location)
+                yield Mismatch(_BRIDGE_TOPICS, message, node.location)

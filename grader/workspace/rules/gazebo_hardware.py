@@ -6,7 +6,11 @@ from collections.abc import Iterator
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch, warning
-from grader.workspace.rules.rule_table import GAZEBO_HARDWARE
+from grader.workspace.rules.rule_table import (
+    NO_CONTROLLER,
+    SIMILAR,
+    Rule,
+)
 
 _PACKAGES = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
 _LIBRARY = re.compile(r"(?:lib)?(\w+?_ros2_control)(?:-system)?(?:\.so)?")
@@ -30,6 +34,38 @@ def _loading_packages(robot: KnownRobot) -> set[str]:
     return packages
 
 
+_GAZEBO_HARDWARE = Rule(
+    "gazebo-hardware",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "The plugin of ros2_control loads hardware of its own package.",
+    why=(
+        "Each plugin looks only for hardware classes of its own package. The hardware is not "
+        "loaded, so no controller moves a joint in Gazebo."
+    ),
+    wrong="""
+<ros2_control name="arm" type="system">
+  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
+</ros2_control>
+<gazebo>
+  <plugin filename="libign_ros2_control-system.so"
+          name="ign_ros2_control::IgnitionROS2ControlPlugin"/>
+</gazebo>
+""",
+    right="""
+<ros2_control name="arm" type="system">
+  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
+</ros2_control>
+<gazebo>
+  <plugin filename="libgz_ros2_control-system.so"
+          name="gz_ros2_control::GazeboSimROS2ControlPlugin"/>
+</gazebo>
+""",
+    frame="rover.urdf",
+)
+
+
 def _other_hardware(robot: KnownRobot, hardware: str, loading: set[str]) -> Iterator[Mismatch]:
     """Yield that hardware is of a package for Gazebo whose plugin is not loaded."""
     name = hardware.strip().partition("/")[0]
@@ -41,5 +77,5 @@ def _other_hardware(robot: KnownRobot, hardware: str, loading: set[str]) -> Iter
                 f"the plugin of {min(loading)} loads no hardware of {name}: both have to be of "
                 "one package"
             )
-            yield warning(GAZEBO_HARDWARE, message, robot.place(element))
+            yield warning(_GAZEBO_HARDWARE, message, robot.place(element))
             return

@@ -14,7 +14,10 @@ from grader.ros.package.package import CMAKE, Package
 from grader.workspace.model.text_files import FILES_A_PART
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, cost_of_guess
-from grader.workspace.rules.rule_table import HEADER_INSTALLED, OWN_HEADER
+from grader.workspace.rules.rule_table import (
+    NOT_COMPILED,
+    Rule,
+)
 from grader.workspace.rules.used_packages import (
     CPP_FILES,
     HEADERS,
@@ -170,6 +173,34 @@ def _misspelt(
         yield _with_guess(workspace, message, header, headers, package)
 
 
+_OWN_HEADER = Rule(
+    "own-header",
+    "builds",
+    NOT_COMPILED,
+    NOT_COMPILED,
+    "The headers of a package that a compiled file includes exist.",
+    why=(
+        "The compiler stops with 'No such file or directory', and colcon does not build the "
+        "package."
+    ),
+    wrong="""
+#include "rover/limit.hpp"
+RCLCPP_COMPONENTS_REGISTER_NODE(rover::Drive)
+""",
+    right="""
+#include "rover/limits.hpp"
+RCLCPP_COMPONENTS_REGISTER_NODE(rover::Drive)
+""",
+    frame="drive.cpp",
+    beside={
+        "rover.launch.py": "Node(package='rover', executable='drive_node'),",
+        "package.xml": "",
+        "parts/CMakeLists.txt": "",
+        "../rover/include/rover/limits.hpp": "#pragma once",
+    },
+)
+
+
 def _with_guess(
     workspace: Workspace, message: str, header: IncludedHeader, headers: _Headers, owner: Package
 ) -> Mismatch:
@@ -177,7 +208,7 @@ def _with_guess(
     workspace.charge(cost_of_guess(len(names)))
     meant = near(posixpath.basename(header.path), names)
     guess = f"; did you mean {quoted(meant)}?" if meant is not None else ""
-    return Mismatch(OWN_HEADER, f"{message}{guess}", header.location, word=header.path)
+    return Mismatch(_OWN_HEADER, f"{message}{guess}", header.location, word=header.path)
 
 
 def _names_in(headers: _Headers, package: Package) -> list[str]:
@@ -187,6 +218,55 @@ def _names_in(headers: _Headers, package: Package) -> list[str]:
         if any(header.package is package for header in having):
             names.append(name)
     return names
+
+
+_HEADER_INSTALLED = Rule(
+    "header-installed",
+    "builds",
+    NOT_COMPILED,
+    NOT_COMPILED,
+    "A build installs the headers that other packages include.",
+    why=(
+        "The package itself builds, and the build of the other package stops at the include "
+        "with 'No such file or directory'."
+    ),
+    wrong="""
+cmake_minimum_required(VERSION 3.8)
+project(wheels)
+find_package(ament_cmake REQUIRED)
+ament_package()
+""",
+    right="""
+cmake_minimum_required(VERSION 3.8)
+project(wheels)
+find_package(ament_cmake REQUIRED)
+install(DIRECTORY include/ DESTINATION include)
+ament_package()
+""",
+    frame="../wheels/CMakeLists.txt",
+    beside={
+        "../wheels/package.xml": """
+<package format="3">
+  <name>wheels</name>
+  <version>1.0.0</version>
+  <description>A part of a rover.</description>
+  <maintainer email="a@example.com">A</maintainer>
+  <license>MIT</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+""",
+        "../wheels/include/wheels/radius.hpp": "#pragma once",
+        "rover.launch.py": "Node(package='rover', executable='drive_node'),",
+        "package.xml": "<depend>wheels</depend>",
+        "parts/CMakeLists.txt": "",
+        "drive.cpp": """
+#include "wheels/radius.hpp"
+RCLCPP_COMPONENTS_REGISTER_NODE(rover::Drive)
+""",
+    },
+    at="rover/src/drive.cpp",
+)
 
 
 def _not_installed(package: Package, owned: _Header, header: IncludedHeader) -> Iterator[Mismatch]:
@@ -204,4 +284,4 @@ def _not_installed(package: Package, owned: _Header, header: IncludedHeader) -> 
         f"in its {CMAKE} names {owned.path}, so the file does not compile"
     )
     at = setup.location(setup.called_at)
-    yield Mismatch(HEADER_INSTALLED, message, header.location, at, word=header.path)
+    yield Mismatch(_HEADER_INSTALLED, message, header.location, at, word=header.path)

@@ -34,12 +34,9 @@ from grader.ros.python.values import Value
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, Undecided, corrections
 from grader.workspace.rules.rule_table import (
-    FIELD_VALUE,
-    INTERFACE_DEPENDENCY,
-    INTERFACE_FIELD,
-    INTERFACE_FILE,
-    INTERFACE_GROUP,
-    INTERFACE_TYPE,
+    NO_INTERFACE,
+    SIMILAR,
+    Rule,
 )
 
 _GROUP = "rosidl_interface_packages"
@@ -81,6 +78,27 @@ def interface_facts(workspace: Workspace) -> Iterator[Fact]:
 # --- Files and CMakeLists.txt
 
 
+_INTERFACE_GROUP = Rule(
+    "interface-group",
+    "interfaces",
+    NO_INTERFACE,
+    SIMILAR,
+    "package.xml of a package with interfaces has <member_of_group>.",
+    why=(
+        "rosidl_generate_interfaces() stops CMake with an error. colcon builds neither the "
+        "package nor those that depend on it."
+    ),
+    wrong="<!-- no member_of_group -->",
+    right="<member_of_group>rosidl_interface_packages</member_of_group>",
+    frame="package.xml",
+    beside={
+        "types/CMakeLists.txt": "",
+        "Speed.msg": "float64 speed",
+    },
+    at="package.xml",
+)
+
+
 def _no_group(package: Package, interfaces: PackageInterfaces) -> Iterator[Mismatch]:
     """Yield that package.xml does not say that a package has interfaces.
 
@@ -94,7 +112,27 @@ def _no_group(package: Package, interfaces: PackageInterfaces) -> Iterator[Misma
             f"package.xml needs <member_of_group>{_GROUP}</member_of_group>: without it, "
             "rosidl_generate_interfaces() stops the build"
         )
-        yield Mismatch(INTERFACE_GROUP, message, manifest.name_location, interfaces.location)
+        yield Mismatch(_INTERFACE_GROUP, message, manifest.name_location, interfaces.location)
+
+
+_INTERFACE_FILE = Rule(
+    "interface-file",
+    "interfaces",
+    NO_INTERFACE,
+    SIMILAR,
+    "rosidl reads the files of messages, services and actions.",
+    why=(
+        "The build of the package stops at the file. None of its messages are generated, and "
+        "packages that depend on it are not built."
+    ),
+    wrong="float Speed",
+    right="float64 speed",
+    frame="Speed.msg",
+    beside={
+        "types/CMakeLists.txt": "",
+        "package.xml": "<member_of_group>rosidl_interface_packages</member_of_group>",
+    },
+)
 
 
 def _unreadable_files(interfaces: PackageInterfaces) -> Iterator[Mismatch]:
@@ -103,7 +141,7 @@ def _unreadable_files(interfaces: PackageInterfaces) -> Iterator[Mismatch]:
         for fault in own_type.interface.faults:
             message = f"rosidl cannot read the file: {fault.message}"
             either = corrections(fault.written, fault.location, fault.meant)
-            yield Mismatch(INTERFACE_FILE, message, fault.location, corrections=either)
+            yield Mismatch(_INTERFACE_FILE, message, fault.location, corrections=either)
 
 
 def _types_of_fields(
@@ -127,6 +165,27 @@ def _types_of_fields(
                     yield from _no_dependency(workspace, interfaces, field, at)
 
 
+_INTERFACE_DEPENDENCY = Rule(
+    "interface-dependency",
+    "interfaces",
+    NO_INTERFACE,
+    SIMILAR,
+    "rosidl_generate_interfaces() names the packages whose types fields have.",
+    why=(
+        "The build stops, because the generated code includes message headers of the other "
+        "package that the compiler does not find."
+    ),
+    wrong='rosidl_generate_interfaces(${PROJECT_NAME} "msg/Speed.msg")',
+    right='rosidl_generate_interfaces(${PROJECT_NAME} "msg/Speed.msg" DEPENDENCIES std_msgs)',
+    frame="CMakeLists.txt",
+    beside={
+        "package.xml": "<member_of_group>rosidl_interface_packages</member_of_group>",
+        "Speed.msg": "std_msgs/Header header",
+    },
+    at="msg/Speed.msg",
+)
+
+
 def _no_dependency(
     workspace: Workspace, interfaces: PackageInterfaces, field: InterfaceField, at: Location
 ) -> Iterator[Mismatch]:
@@ -143,7 +202,7 @@ def _no_dependency(
             f"the field {field.name} has a type of {field.type.package}, which DEPENDENCIES of "
             "rosidl_generate_interfaces() does not name: the build stops"
         )
-        yield Mismatch(INTERFACE_DEPENDENCY, message, at, interfaces.location)
+        yield Mismatch(_INTERFACE_DEPENDENCY, message, at, interfaces.location)
 
 
 def _reached(workspace: Workspace, interfaces: PackageInterfaces) -> set[str] | None:
@@ -194,6 +253,32 @@ def is_absent(workspace: Workspace, name: str) -> bool:
     return True
 
 
+_INTERFACE_TYPE = Rule(
+    "interface-type",
+    "interfaces",
+    NO_INTERFACE,
+    SIMILAR,
+    "The messages, services and actions that code and interface files use exist.",
+    why=(
+        "A Python node ends at its start with an ImportError or ModuleNotFoundError. A C++ file"
+        " does not compile, because the header does not exist."
+    ),
+    wrong="""
+def __init__(self):
+    super().__init__('pilot')
+    from std_msgs.msg import Float
+    self.speeds = self.create_publisher(Float, 'speed', 10)
+""",
+    right="""
+def __init__(self):
+    super().__init__('pilot')
+    from std_msgs.msg import Float64
+    self.speeds = self.create_publisher(Float64, 'speed', 10)
+""",
+    frame="pilot.py",
+)
+
+
 def _no_type(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
     """Return that nothing defines a type, if this is certain."""
     if not is_absent(workspace, name):
@@ -206,7 +291,7 @@ def _no_type(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
         reason = f"rosidl_generate_interfaces() of {package} does not name its file"
         if interfaces.location is None:
             reason = f"{package} does not call rosidl_generate_interfaces()"
-        return Mismatch(INTERFACE_TYPE, f"{shown}: {reason}", at, interfaces.location)
+        return Mismatch(_INTERFACE_TYPE, f"{shown}: {reason}", at, interfaces.location)
     if interfaces is not None:
         names = [*interfaces.types]
     else:
@@ -214,7 +299,7 @@ def _no_type(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
     workspace.charge(len(names))
     change = find_change(package, own_name, workspace.releases) if interfaces is None else ""
     if change:
-        return Mismatch(INTERFACE_TYPE, f"{shown} {change}", at)
+        return Mismatch(_INTERFACE_TYPE, f"{shown} {change}", at)
     return _no_type_among(names, shown, f"{package}/", own_name, at)
 
 
@@ -226,7 +311,7 @@ def _no_type_among(
     for other in names:
         if other.partition(".")[2] == short:
             hint = f"there is {folder}{other.replace('.', '/')}"
-            return Mismatch(INTERFACE_TYPE, f"{shown}; {hint}", at)
+            return Mismatch(_INTERFACE_TYPE, f"{shown}; {hint}", at)
     of_kind = [each.partition(".")[2] for each in names if each.startswith(f"{kind}.")]
     return _no_type_of_kind(shown, short, of_kind, at)
 
@@ -240,7 +325,7 @@ def _no_type_of_kind(shown: str, name: str, names: Sequence[str], at: Location) 
     elif names and len(names) <= MAX_NAMED:
         hint = f"; there is {enumerated(names)}"
     either = corrections(name, at, meant)
-    return Mismatch(INTERFACE_TYPE, f"{shown}{hint}", at, corrections=either)
+    return Mismatch(_INTERFACE_TYPE, f"{shown}{hint}", at, corrections=either)
 
 
 def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
@@ -320,6 +405,30 @@ def _is_of_python(section: InterfaceSection, attribute: str) -> bool:
     return is_known or attribute.startswith("_") or attribute.endswith("__DEFAULT")
 
 
+_INTERFACE_FIELD = Rule(
+    "interface-field",
+    "interfaces",
+    NO_INTERFACE,
+    SIMILAR,
+    "The fields and constants that code uses exist.",
+    why=(
+        "Python raises an AttributeError when the line runs, often first in a callback. A C++ "
+        "file does not compile."
+    ),
+    wrong="""
+speed = Float64()
+speed.value = 1.0
+self.speeds.publish(speed)
+""",
+    right="""
+speed = Float64()
+speed.data = 1.0
+self.speeds.publish(speed)
+""",
+    frame="tick/pilot.py",
+)
+
+
 def _no_field(
     workspace: Workspace, shown: str, section: InterfaceSection, attribute: str, at: Location
 ) -> Iterator[Mismatch]:
@@ -343,7 +452,7 @@ def _no_field(
         if len(names) > MAX_NAMED:
             hint = f"{hint} and others"
     message = f"{shown} has no {noun} {quoted(attribute)}; {hint}"
-    yield Mismatch(INTERFACE_FIELD, message, at, corrections=corrections(attribute, at, meant))
+    yield Mismatch(_INTERFACE_FIELD, message, at, corrections=corrections(attribute, at, meant))
 
 
 def _fields_with(workspace: Workspace, section: InterfaceSection, attribute: str) -> list[str]:
@@ -355,6 +464,31 @@ def _fields_with(workspace: Workspace, section: InterfaceSection, attribute: str
             if part is not None and attribute in part.fields:
                 inside.append(f"{field.name}.{attribute}")
     return inside
+
+
+_FIELD_VALUE = Rule(
+    "field-value",
+    "interfaces",
+    NO_INTERFACE,
+    SIMILAR,
+    "A field is set to a value of its type.",
+    is_of_type=True,
+    why=(
+        "Up to Iron the assignment raises an AssertionError that stops a Python node. Later "
+        "releases convert the value or fail when the message is sent."
+    ),
+    wrong="""
+speed = Float64()
+speed.data = '1.0'
+self.speeds.publish(speed)
+""",
+    right="""
+speed = Float64()
+speed.data = 1.0
+self.speeds.publish(speed)
+""",
+    frame="tick/pilot.py",
+)
 
 
 def _other_value(
@@ -369,7 +503,7 @@ def _other_value(
             message = (
                 f"the field {field.name} of {shown} is {wanted}; it is set to {_in_words(value)}"
             )
-            yield Mismatch(FIELD_VALUE, message, use.location)
+            yield Mismatch(_FIELD_VALUE, message, use.location)
 
 
 def _type_in_words(kind: FieldType) -> str:
@@ -390,14 +524,14 @@ def _other_list(
     kind, owner = field.type, f"the field {field.name} of {shown} is {_type_in_words(field.type)}"
     if not kind.is_list:
         if not kind.package and kind.name not in TEXTS:
-            yield Mismatch(FIELD_VALUE, f"{owner}; it is set to a list", at)
+            yield Mismatch(_FIELD_VALUE, f"{owner}; it is set to a list", at)
         return
     if kind.size is not None:
         is_wrong = len(items) > kind.size if kind.is_bounded else len(items) != kind.size
         if is_wrong:
             most = "at most " if kind.is_bounded else ""
             message = f"{owner} with {most}{kind.size} items; it is set to a list of {len(items)}"
-            yield Mismatch(FIELD_VALUE, message, at)
+            yield Mismatch(_FIELD_VALUE, message, at)
             return
     for item in items:
         if not isinstance(item, bool | int | float | str) or _fits_item(kind, item):
@@ -408,7 +542,7 @@ def _other_list(
             continue
         if not is_certain:
             message += ", which rclpy refuses up to Iron"
-        yield Mismatch(FIELD_VALUE, message, at, is_certain=is_certain)
+        yield Mismatch(_FIELD_VALUE, message, at, is_certain=is_certain)
         return
 
 

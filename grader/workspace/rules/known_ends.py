@@ -24,10 +24,9 @@ from grader.workspace.graph.unread_ends import Sought, may_be_opened
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    DISPLAY_TYPE,
-    INPUT_PUBLISHED,
-    INPUT_TYPE,
-    REMAPPED_TOPIC,
+    NO_COMPANION,
+    NO_WORD,
+    Rule,
 )
 
 _INPUT = re.compile(r"([a-z]+)\d+")
@@ -73,6 +72,32 @@ def _other_type(published: Sequence[End], wanted: str) -> End | None:
     return next(iter(published), None)
 
 
+_INPUT_TYPE = Rule(
+    "input-type",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "A well-known program reads a topic with the type that it has.",
+    why=(
+        "The program subscribes with its own type and is not matched with the publisher. It "
+        "receives no message and publishes no result."
+    ),
+    wrong="""
+Node(package='rover', executable='camera'),
+Node(package='pointcloud_to_laserscan', executable='pointcloud_to_laserscan_node',
+     remappings=[('cloud_in', '/depth')]),
+""",
+    right="""
+Node(package='rover', executable='camera'),
+Node(package='depthimage_to_laserscan', executable='depthimage_to_laserscan_node',
+     remappings=[('depth', '/depth')]),
+""",
+    beside={
+        "camera.py": "",
+    },
+)
+
+
 def _other_types(
     workspace: Workspace,
     program: KnownProgram,
@@ -99,7 +124,7 @@ def _other_types(
                 f"{each.reader} reads {each.topic} with {each.type}, but it is published with "
                 f"{other.type} ({other.location.file_and_line})"
             )
-            yield warning(INPUT_TYPE, message, each.location, other.location)
+            yield warning(_INPUT_TYPE, message, each.location, other.location)
 
 
 def _opened(workspace: Workspace, program: KnownProgram) -> Sequence[_Input]:
@@ -141,6 +166,30 @@ def _inputs(workspace: Workspace, program: KnownProgram) -> list[_Input]:
     return inputs
 
 
+_INPUT_PUBLISHED = Rule(
+    "input-published",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "The topic that a parameter names is published.",
+    why=(
+        "The node starts without an error and never gets the input. A filter estimates without "
+        "that sensor, or publishes nothing."
+    ),
+    wrong="""
+Node(package='rover', executable='odometry'),
+Node(package='robot_localization', executable='ekf_node', parameters=[{'odom0': 'wheel_odom'}]),
+""",
+    right="""
+Node(package='rover', executable='odometry'),
+Node(package='robot_localization', executable='ekf_node', parameters=[{'odom0': 'wheels/odom'}]),
+""",
+    beside={
+        "odometry.py": "",
+    },
+)
+
+
 def _not_published(
     workspace: Workspace, node: StartedNode, inputs: Sequence[_Input], published: _ByTopic
 ) -> Iterator[Mismatch]:
@@ -158,7 +207,7 @@ def _not_published(
                 f"{each.reader} reads {each.topic}, which nothing publishes; did you mean "
                 f"{meant.name} ({meant.location.file_and_line})?"
             )
-            yield warning(INPUT_PUBLISHED, message, each.location, meant.location)
+            yield warning(_INPUT_PUBLISHED, message, each.location, meant.location)
 
 
 def _only_unread(
@@ -187,6 +236,27 @@ def _may_be_published(workspace: Workspace, topic: str) -> bool:
     return may_be_opened(workspace, Sought("publisher", topic, None))
 
 
+_REMAPPED_TOPIC = Rule(
+    "remapped-topic",
+    "words",
+    NO_WORD,
+    NO_WORD,
+    "A remapping of a well-known program names a topic that it has.",
+    why=(
+        "A remapping without a match does nothing and prints nothing. The program waits on its "
+        "own topic and gets no message."
+    ),
+    wrong="""
+Node(package='depthimage_to_laserscan', executable='depthimage_to_laserscan_node',
+     remappings=[('depht', '/camera/depth')]),
+""",
+    right="""
+Node(package='depthimage_to_laserscan', executable='depthimage_to_laserscan_node',
+     remappings=[('depth', '/camera/depth')]),
+""",
+)
+
+
 def _other_remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
     """Yield the remappings of names that surely stand for one that a program has.
 
@@ -205,7 +275,30 @@ def _other_remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
                 f"{node.executable} has no topic {quoted(written)}, so its remapping does nothing; "
                 f"did you mean {meant}?"
             )
-            yield warning(REMAPPED_TOPIC, message, node.location)
+            yield warning(_REMAPPED_TOPIC, message, node.location)
+
+
+_DISPLAY_TYPE = Rule(
+    "display-type",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "A display of RViz reads a topic with the type that it has.",
+    why=(
+        "The display is never matched with the publisher, so it stays empty although ros2 topic"
+        " hz shows messages."
+    ),
+    wrong="""
+- {Class: rviz_default_plugins/LaserScan, Name: Depth, Enabled: true, Topic: {Value: /depth}}
+""",
+    right="""
+- {Class: rviz_default_plugins/Image, Name: Depth, Enabled: true, Topic: {Value: /depth}}
+""",
+    frame="show/rover.rviz",
+    beside={
+        "camera.py": "",
+    },
+)
 
 
 def _displays(workspace: Workspace, published: _ByTopic) -> Iterator[Mismatch]:
@@ -224,4 +317,4 @@ def _displays(workspace: Workspace, published: _ByTopic) -> Iterator[Mismatch]:
                         f"the display {quoted(display.name)} reads {wanted}, but {topic.text} is "
                         f"published with {other.type} ({other.location.file_and_line})"
                     )
-                    yield warning(DISPLAY_TYPE, message, topic.location, other.location)
+                    yield warning(_DISPLAY_TYPE, message, topic.location, other.location)

@@ -18,7 +18,8 @@ from grader.workspace.model.under_arguments import may_vary
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, warning
 from grader.workspace.rules.rule_table import (
-    JOINT_LIMIT,
+    OTHER_VALUE,
+    Rule,
 )
 
 _TOLERANCE = 1e-3  # of a limit: files round differently
@@ -91,6 +92,31 @@ def _said_by_control(robot: KnownRobot, system: Element) -> Iterator[_Said]:
                     yield _Said(limit, name, value, words, robot.place(param))
 
 
+_JOINT_LIMIT = Rule(
+    "joint-limit",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "The limits in a file are within those of the robot's joints.",
+    why=(
+        "MoveIt or ros2_control then allows motions that the joint is not made for. A "
+        "controller may abort them, and a real motor may be damaged."
+    ),
+    wrong="""
+joint_limits:
+  arm_joint: {has_velocity_limits: true, max_velocity: 9.0}
+""",
+    right="""
+joint_limits:
+  arm_joint: {has_velocity_limits: true, max_velocity: 0.9}
+""",
+    frame="joint_limits.yaml",
+    beside={
+        "arm/rover.urdf": "",
+    },
+)
+
+
 def _exchanged(limits: Sequence[_Said]) -> Iterator[Fact]:
     """Yield that the least position of a command interface is above the greatest one."""
     lowest = {said.joint: said for said in limits if said.name == "min_position"}
@@ -101,7 +127,7 @@ def _exchanged(limits: Sequence[_Said]) -> Iterator[Fact]:
                 f"{lower.words} is {lower.value:g}, above max, which is {said.value:g}: they are "
                 "exchanged"
             )
-            yield warning(JOINT_LIMIT, message, lower.location, said.location)
+            yield warning(_JOINT_LIMIT, message, lower.location, said.location)
 
 
 def _wider(said: _Said, robots: Sequence[KnownRobot]) -> Iterator[Fact]:
@@ -124,7 +150,7 @@ def _wider(said: _Said, robots: Sequence[KnownRobot]) -> Iterator[Fact]:
         f"{_allowed(said, limit):g}"
     )
     at = place.resolve() if place is not None else None
-    yield warning(JOINT_LIMIT, message, said.location, at)
+    yield warning(_JOINT_LIMIT, message, said.location, at)
 
 
 def _allowed(said: _Said, limit: Limit) -> float:

@@ -7,7 +7,10 @@ from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch, warning
-from grader.workspace.rules.rule_table import PLUGIN_LISTED
+from grader.workspace.rules.rule_table import (
+    NO_EFFECT,
+    Rule,
+)
 
 _COSTMAPS = ("global_costmap", "local_costmap")
 _LISTS = ("plugins", "filters")
@@ -25,6 +28,36 @@ def listed_plugin_facts(workspace: Workspace) -> Iterator[Fact]:
                 yield from _unlisted(keys[-1], section)
 
 
+_PLUGIN_LISTED = Rule(
+    "plugin-listed",
+    "parameters",
+    NO_EFFECT,
+    NO_EFFECT,
+    "A list of plugins names each layer that is configured.",
+    why=(
+        "The costmap loads only listed layers and does not report others. Without "
+        "inflation_layer, for example, paths run close to obstacles."
+    ),
+    wrong="""
+global_costmap:
+  global_costmap:
+    ros__parameters:
+      plugins: [static_layer]
+      static_layer: {plugin: "nav2_costmap_2d::StaticLayer"}
+      inflation_layer: {plugin: "nav2_costmap_2d::InflationLayer"}
+""",
+    right="""
+global_costmap:
+  global_costmap:
+    ros__parameters:
+      plugins: [static_layer, inflation_layer]
+      static_layer: {plugin: "nav2_costmap_2d::StaticLayer"}
+      inflation_layer: {plugin: "nav2_costmap_2d::InflationLayer"}
+""",
+    frame="nav/costmap.yaml",
+)
+
+
 def _unlisted(costmap: str, section: YamlNode) -> Iterator[Mismatch]:
     """Yield the sections with a plugin that is in no list of a costmap."""
     plugins = section.get("plugins")
@@ -39,4 +72,4 @@ def _unlisted(costmap: str, section: YamlNode) -> Iterator[Mismatch]:
         is_copied = (costmap, name) == _COPIED
         if kind is not None and name not in listed and not is_copied:
             message = f"the {costmap} does not use {quoted(name)}: its plugins do not name it"
-            yield warning(PLUGIN_LISTED, message, kind.location, plugins.location)
+            yield warning(_PLUGIN_LISTED, message, kind.location, plugins.location)

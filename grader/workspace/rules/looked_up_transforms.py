@@ -12,7 +12,10 @@ from grader.workspace.graph.graph import graph_of
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.frames import openings
 from grader.workspace.rules.names import Compared, Mismatch, warning
-from grader.workspace.rules.rule_table import TRANSFORM_CONNECTED
+from grader.workspace.rules.rule_table import (
+    UNCONNECTED,
+    Rule,
+)
 
 
 class _Lookup(NamedTuple):
@@ -48,6 +51,32 @@ class _Trees:
         return None not in numbers and numbers[0] != numbers[1]
 
 
+_TRANSFORM_CONNECTED = Rule(
+    "transform-connected",
+    "transforms",
+    UNCONNECTED,
+    UNCONNECTED,
+    "The frames between which a node looks up a transform are connected.",
+    why=(
+        "Each lookup fails with a ConnectivityException, because the two frames are not part of"
+        " the same tree. Code without a handler stops there."
+    ),
+    wrong="self.buffer.lookup_transform('map', 'lidar', rclpy.time.Time())",
+    right="self.buffer.lookup_transform('base_link', 'lidar', rclpy.time.Time())",
+    frame="tick/pilot.py",
+    beside={
+        "rover.launch.py": """
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot}]),
+Node(package='tf2_ros', executable='static_transform_publisher',
+     arguments=['--frame-id', 'map', '--child-frame-id', 'dock']),
+Node(package='rover', executable='pilot'),
+""",
+        "lidar/rover.urdf": "",
+    },
+)
+
+
 def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
     """Yield the transforms that are looked up between frames that nothing connects.
 
@@ -70,7 +99,7 @@ def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
                 "lookup fails"
             )
             at = lookup.location
-            yield warning(TRANSFORM_CONNECTED, message, at)._replace(names=(target, source))
+            yield warning(_TRANSFORM_CONNECTED, message, at)._replace(names=(target, source))
 
 
 def _lookups(workspace: Workspace) -> Iterator[_Lookup]:

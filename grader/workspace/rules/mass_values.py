@@ -14,10 +14,7 @@ from grader.ros.urdf.shapes import PlacedShape
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    CENTRE_OF_MASS,
-    INERTIA_AXIS,
-    INERTIA_PLACE,
-    INERTIA_SIZE,
+    OTHER_VALUE,
     Rule,
 )
 
@@ -65,6 +62,32 @@ def _placed_shapes(link: Link) -> list[PlacedShape]:
     return [PlacedShape(shape, origin.placed_in()) for shape, origin in with_volume(elements)]
 
 
+_CENTRE_OF_MASS = Rule(
+    "centre-of-mass",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "The centre of mass of a link is within its shapes.",
+    why=(
+        "Gazebo simulates the mass where the link is not. The robot may tip over, swing or "
+        "rotate without a visible reason."
+    ),
+    wrong="""
+<inertial>
+  <origin xyz="0 0 -0.5"/><mass value="2"/>
+  <inertia ixx="0.02" iyy="0.02" izz="0.01" ixy="0" ixz="0" iyz="0"/>
+</inertial>
+""",
+    right="""
+<inertial>
+  <origin xyz="0 0 0"/><mass value="2"/>
+  <inertia ixx="0.02" iyy="0.02" izz="0.01" ixy="0" ixz="0" iyz="0"/>
+</inertial>
+""",
+    frame="weight/rover.urdf",
+)
+
+
 def _centre_outside(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
     """Yield that the centre of mass is outside of the box around all shapes of a link."""
     placed = _placed_shapes(link)
@@ -84,7 +107,34 @@ def _centre_outside(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
     )
     at = place(inertial.origin.location, "xyz") or place(inertial.location)
     if at is not None:
-        yield warning(CENTRE_OF_MASS, message, at.resolve())
+        yield warning(_CENTRE_OF_MASS, message, at.resolve())
+
+
+_INERTIA_PLACE = Rule(
+    "inertia-place",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "The inertia of a shape about its middle has its <origin> there.",
+    why=(
+        "Gazebo simulates the mass at the origin of the link. An arm then loads its joint too "
+        "little or too much, or a tall robot tips differently."
+    ),
+    wrong="""
+<inertial>
+  <mass value="3"/>
+  <inertia ixx="0.0425" iyy="0.0425" izz="0.005" ixy="0" ixz="0" iyz="0"/>
+</inertial>
+""",
+    right="""
+<inertial>
+  <origin xyz="0 0 0.2"/>
+  <mass value="3"/>
+  <inertia ixx="0.0425" iyy="0.0425" izz="0.005" ixy="0" ixz="0" iyz="0"/>
+</inertial>
+""",
+    frame="long/rover.urdf",
+)
 
 
 def _other_centre(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
@@ -107,7 +157,7 @@ def _other_centre(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
         f'of mass is {in_millimetres(away)} away: write <origin xyz="{point(middle)}"/>'
     )
     assert inertial.location is not None  # which mass_facts() asks for
-    yield warning(INERTIA_PLACE, message, inertial.location.resolve())
+    yield warning(_INERTIA_PLACE, message, inertial.location.resolve())
 
 
 def _only_shape(link: Link) -> PlacedShape | None:
@@ -127,6 +177,32 @@ def _is_of_solid(inertial: Inertial, placed: PlacedShape) -> bool:
         return False
     expected = turned(solid_inertia(placed.geometry, inertial.mass), rotation)
     return dist(inertial.inertia, expected) <= _EQUAL * max(map(abs, expected))
+
+
+_INERTIA_SIZE = Rule(
+    "inertia-size",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "The inertia of a link is that of a body of its size.",
+    why=(
+        "Gazebo simulates a body that hardly starts or stops to rotate. Joints respond slowly, "
+        "and controllers overshoot or do not reach their goals."
+    ),
+    wrong="""
+<inertial>
+  <mass value="2"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
+</inertial>
+""",
+    right="""
+<inertial>
+  <mass value="2"/>
+  <inertia ixx="0.0101667" iyy="0.02" izz="0.0101667" ixy="0" ixz="0" iyz="0"/>
+</inertial>
+""",
+    frame="weight/rover.urdf",
+)
 
 
 def _too_large(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
@@ -152,7 +228,7 @@ def _too_large(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
     )
     at = place(inertial.location, None, "inertia") or place(inertial.location)
     if at is not None:
-        yield warning(INERTIA_SIZE, message, at.resolve())
+        yield warning(_INERTIA_SIZE, message, at.resolve())
 
 
 def _extents(placed: list[PlacedShape]) -> list[tuple[float, float]]:
@@ -162,6 +238,32 @@ def _extents(placed: list[PlacedShape]) -> list[tuple[float, float]]:
         each = [shape.extent(axis) for shape in placed]
         extents.append((min(least for least, _ in each), max(most for _, most in each)))
     return extents
+
+
+_INERTIA_AXIS = Rule(
+    "inertia-axis",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "The inertia of a cylinder is that about its own axis.",
+    why=(
+        "Gazebo resists rotation about the wrong axis. Wheels and arms accelerate too easily or"
+        " too slowly, and the robot may shake."
+    ),
+    wrong="""
+<inertial>
+  <mass value="2"/>
+  <inertia ixx="0.0101667" iyy="0.0101667" izz="0.02" ixy="0" ixz="0" iyz="0"/>
+</inertial>
+""",
+    right="""
+<inertial>
+  <mass value="2"/>
+  <inertia ixx="0.0101667" iyy="0.02" izz="0.0101667" ixy="0" ixz="0" iyz="0"/>
+</inertial>
+""",
+    frame="weight/rover.urdf",
+)
 
 
 def _other_axis(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
@@ -201,7 +303,7 @@ def _other_axis(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
         macro, call = inside[0]
         at = call._replace(calls=around)
         advice = _advice_for_call(inertial, macro, is_direct=len(inside) == 1)
-    yield warning(INERTIA_AXIS, f"{said}cylinder lies otherwise: {advice}", at)
+    yield warning(_INERTIA_AXIS, f"{said}cylinder lies otherwise: {advice}", at)
 
 
 def _advice_for_call(inertial: Inertial, macro: str, *, is_direct: bool) -> str:

@@ -14,7 +14,12 @@ from grader.workspace.graph.node_ends import deciding_parameter
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.interfaces import is_absent
 from grader.workspace.rules.names import Compared, Fact, Mismatch
-from grader.workspace.rules.rule_table import SERVICE_TYPE, TOPIC_QUALITY, TOPIC_TYPE, Rule
+from grader.workspace.rules.rule_table import (
+    NO_SERVICE,
+    NO_TOPIC,
+    SIMILAR,
+    Rule,
+)
 
 # What well-known programs subscribe to is compared by a rule of their topics.
 _ASKING: tuple[EndSource, ...] = ("code", "controller", "bridge")
@@ -37,10 +42,54 @@ class Meeting(NamedTuple):
         return asking, distinct(graph.of_kind(self.offering))
 
 
-TOPICS = Meeting("subscription", "publisher", TOPIC_TYPE, "topic", "subscribed to", "published")
+_TOPIC_TYPE = Rule(
+    "topic-type",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "Publishers and subscriptions of a topic have one type.",
+    is_of_type=True,
+    why=(
+        "Publisher and subscription of one topic with two types are never matched, so no "
+        "message arrives. ros2 topic list -t shows both types."
+    ),
+    wrong="""
+self.commands = self.create_publisher(Twist, 'cmd_vel', 10)
+self.create_subscription(TwistStamped, 'cmd_vel', self.receive, 10)
+""",
+    right="""
+self.commands = self.create_publisher(Twist, 'cmd_vel', 10)
+self.create_subscription(Twist, 'cmd_vel', self.receive, 10)
+""",
+    frame="start/pilot.py",
+)
+
+TOPICS = Meeting("subscription", "publisher", _TOPIC_TYPE, "topic", "subscribed to", "published")
+_SERVICE_TYPE = Rule(
+    "service-type",
+    "services",
+    NO_SERVICE,
+    SIMILAR,
+    "A service or action is called with the type with which it is served.",
+    is_of_type=True,
+    why=(
+        "No request reaches a server with another type, so the client waits for an answer that "
+        "never comes. No error is printed."
+    ),
+    wrong="""
+self.create_service(Trigger, 'stop', self.serve)
+self.client = self.create_client(SetBool, 'stop')
+""",
+    right="""
+self.create_service(Trigger, 'stop', self.serve)
+self.client = self.create_client(Trigger, 'stop')
+""",
+    frame="start/pilot.py",
+)
+
 SERVICES = (
-    Meeting("client", "service", SERVICE_TYPE, "service", "called", "served"),
-    Meeting("action client", "action server", SERVICE_TYPE, "action", "called", "served"),
+    Meeting("client", "service", _SERVICE_TYPE, "service", "called", "served"),
+    Meeting("action client", "action server", _SERVICE_TYPE, "action", "called", "served"),
 )
 
 
@@ -132,12 +181,36 @@ def _other_type_of_controller(asking: End, offering: End) -> Iterator[Mismatch]:
             f"subscribes to it with {asking.type} ({asking.location.file_and_line})"
         )
         yield Mismatch(
-            TOPIC_TYPE,
+            _TOPIC_TYPE,
             message,
             offering.location,
             asking.location,
             is_certain=asking.surely_meets(offering),
         )
+
+
+_TOPIC_QUALITY = Rule(
+    "topic-quality",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A publisher offers the quality of service that a subscription needs.",
+    why=(
+        "The middleware does not connect the two. ROS 2 warns of incompatible QoS, and no "
+        "message arrives although ros2 topic list shows the topic."
+    ),
+    wrong="""
+best_effort = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+self.speeds = self.create_publisher(Float64, 'speed', best_effort)
+self.create_subscription(Float64, 'speed', self.receive, 10)
+""",
+    right="""
+best_effort = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+self.speeds = self.create_publisher(Float64, 'speed', best_effort)
+self.create_subscription(Float64, 'speed', self.receive, best_effort)
+""",
+    frame="start/pilot.py",
+)
 
 
 def _other_quality(asking: End, offering: End) -> Iterator[Mismatch]:
@@ -153,7 +226,9 @@ def _other_quality(asking: End, offering: End) -> Iterator[Mismatch]:
                 f"{offered} ({offering.location.file_and_line})"
             )
             is_certain = asking.surely_meets(offering)
-            wrong = Mismatch(TOPIC_QUALITY, message, asking.location, offering.location, is_certain)
+            wrong = Mismatch(
+                _TOPIC_QUALITY, message, asking.location, offering.location, is_certain
+            )
             yield wrong._replace(names=(asking.name,))
 
 
@@ -179,4 +254,4 @@ def _other_type_in_row(end: End, row: BridgeRow) -> Mismatch:
         f"{row.ros_type} ({row.location.file_and_line})"
     )
     is_certain = row.is_used and end.is_certain
-    return Mismatch(TOPIC_TYPE, message, end.location, row.location, is_certain)
+    return Mismatch(_TOPIC_TYPE, message, end.location, row.location, is_certain)

@@ -19,7 +19,10 @@ from grader.ros.package.mesh_files import mesh_file
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.model import Box, Capsule, Cylinder, Geometry, Link, Mesh, Robot, Sphere
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.rule_table import MESH_UNIT
+from grader.workspace.rules.rule_table import (
+    OTHER_VALUE,
+    Rule,
+)
 
 # What is about a factor of 1000, and for which ones in a sample a whole mesh is read.
 _LEAST, _MOST, _SUSPECT = 500.0, 2000.0, 100.0
@@ -97,6 +100,40 @@ def _meshes_of(link: Link) -> list[Mesh]:
     return list(dict.fromkeys(shape for shape in shapes if isinstance(shape, Mesh)))
 
 
+_MESH_UNIT = Rule(
+    "mesh-unit",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "Meshes are in metres.",
+    why=(
+        "RViz and Gazebo show the mesh about 1000 times too large or too small. It covers the "
+        "scene or is invisible, and collisions with it are wrong."
+    ),
+    wrong="""
+<visual><geometry><mesh filename="package://rover/meshes/box.obj"/></geometry></visual>
+""",
+    right="""
+<visual><geometry>
+  <mesh filename="package://rover/meshes/box.obj" scale="0.001 0.001 0.001"/>
+</geometry></visual>
+""",
+    frame="mesh/rover.urdf",
+    beside={
+        "box.obj": """
+v 0 0 0
+v 300 0 0
+v 0 200 0
+v 0 0 100
+f 1 2 3
+f 1 2 4
+f 1 3 4
+f 2 3 4
+""",
+    },
+)
+
+
 def _other_unit(
     urdf: Read,
     link: Link,
@@ -112,7 +149,7 @@ def _other_unit(
         f"is {length:.3g} m long, but {reference.what} is {reference.length:.3g} m: is it in "
         "millimetres or in metres? See its scale",
     )
-    return MESH_UNIT.problem(message, at.resolve(), is_certain=False)
+    return _MESH_UNIT.problem(message, at.resolve(), is_certain=False)
 
 
 def _is_off(length: float, right: float, least: float, most: float) -> bool:

@@ -15,7 +15,10 @@ from grader.workspace.model.code_text import code_alone
 from grader.workspace.model.own_code import CPP_ENDINGS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
-from grader.workspace.rules.rule_table import MESSAGE_STAMP
+from grader.workspace.rules.rule_table import (
+    NO_MESSAGE,
+    Rule,
+)
 
 _STAMPED = frozenset(
     {
@@ -27,6 +30,33 @@ _STAMPED = frozenset(
 _MAY_SET = re.compile(r"stamp(?!ed\.h)|[Hh]eader\b(?!\s*+\.\s*+frame_id\b)")
 # Of robot_state_publisher: whether it publishes what is older than what it published last.
 _IGNORES = "ignore_timestamp"
+
+
+_MESSAGE_STAMP = Rule(
+    "message-stamp",
+    "messages",
+    NO_MESSAGE,
+    NO_MESSAGE,
+    "Messages and transforms have a stamp where what reads them needs it.",
+    why=(
+        "tf2 ignores a second transform with the same stamp, and robot_state_publisher skips "
+        "joint states that are not newer. The robot does not move in RViz."
+    ),
+    wrong="""
+frame = TransformStamped()
+frame.header.frame_id = 'odom'
+frame.child_frame_id = 'base_link'
+self.frames.sendTransform(frame)
+""",
+    right="""
+frame = TransformStamped()
+frame.header.stamp = self.get_clock().now().to_msg()
+frame.header.frame_id = 'odom'
+frame.child_frame_id = 'base_link'
+self.frames.sendTransform(frame)
+""",
+    frame="joints/pilot.py",
+)
 
 
 def message_stamp_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -48,7 +78,7 @@ def message_stamp_facts(workspace: Workspace) -> Iterator[Fact]:
                         "the transform has no stamp, and tf2 ignores all after the first one: set "
                         "header.stamp to the time of the node's clock"
                     )
-                    yield warning(MESSAGE_STAMP, message, transform.location)
+                    yield warning(_MESSAGE_STAMP, message, transform.location)
                     break
 
 
@@ -66,7 +96,7 @@ def _of_messages(graph: Graph, sources: "_CodeSources") -> Iterator[Mismatch]:
                 f"the {name} has no stamp, so {read.node.executable} does not use it: set "
                 "header.stamp to the time of the node's clock"
             )
-            yield warning(MESSAGE_STAMP, message, at, read.location)
+            yield warning(_MESSAGE_STAMP, message, at, read.location)
 
 
 def _compares_times(end: End) -> bool:

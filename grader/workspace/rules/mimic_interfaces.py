@@ -7,7 +7,11 @@ from grader.ros.xml.parsing import Element
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch
-from grader.workspace.rules.rule_table import MIMIC_COMMAND
+from grader.workspace.rules.rule_table import (
+    NO_CONTROLLER,
+    SIMILAR,
+    Rule,
+)
 
 # Since this one, hardware_interface reads <mimic>: src/component_parser.cpp of ros2_control.
 _SINCE = RELEASES.index("jazzy")
@@ -32,6 +36,44 @@ def mimic_facts(workspace: Workspace) -> Iterator[Fact]:
                     yield from _commands_of(robot, joint, is_certain=is_certain)
 
 
+_MIMIC_COMMAND = Rule(
+    "mimic-command",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "A joint that mimics another one has no command interface.",
+    why=(
+        "From Jazzy on ros2_control raises an error when it parses the robot. No hardware is "
+        "loaded, and spawners wait or fail."
+    ),
+    wrong="""
+<link name="a"/> <link name="b"/>
+<joint name="first" type="continuous"><parent link="base_link"/><child link="a"/></joint>
+<joint name="second" type="continuous">
+  <parent link="a"/><child link="b"/><mimic joint="first"/>
+</joint>
+<ros2_control name="arm" type="system">
+  <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+  <joint name="first"><command_interface name="position"/></joint>
+  <joint name="second"><command_interface name="position"/></joint>
+</ros2_control>
+""",
+    right="""
+<link name="a"/> <link name="b"/>
+<joint name="first" type="continuous"><parent link="base_link"/><child link="a"/></joint>
+<joint name="second" type="continuous">
+  <parent link="a"/><child link="b"/><mimic joint="first"/>
+</joint>
+<ros2_control name="arm" type="system">
+  <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+  <joint name="first"><command_interface name="position"/></joint>
+  <joint name="second"><state_interface name="position"/></joint>
+</ros2_control>
+""",
+    frame="rover.urdf",
+)
+
+
 def _commands_of(robot: KnownRobot, joint: Element, *, is_certain: bool) -> Iterator[Mismatch]:
     interface = next(joint.iterchildren("command_interface"), None)
     if interface is not None and joint.get("mimic") not in _FALSE:
@@ -41,4 +83,4 @@ def _commands_of(robot: KnownRobot, joint: Element, *, is_certain: bool) -> Iter
             f"{since}ros2_control loads no robot with a command interface of {name!r}, whose joint "
             'mimics another one: remove it, or write mimic="false"'
         )
-        yield Mismatch(MIMIC_COMMAND, message, robot.place(interface), is_certain=is_certain)
+        yield Mismatch(_MIMIC_COMMAND, message, robot.place(interface), is_certain=is_certain)

@@ -26,9 +26,9 @@ from grader.workspace.rules.names import (
     corrections,
 )
 from grader.workspace.rules.rule_table import (
-    SERVICE_SERVED,
-    TOPIC_PUBLISHED,
-    TOPIC_SUBSCRIBED,
+    NO_SERVICE,
+    NO_TOPIC,
+    SIMILAR,
     Rule,
 )
 
@@ -87,6 +87,28 @@ def _offers(workspace: Workspace, publishers: Sequence[End]) -> Iterator[_Offer]
                 yield _Offer(f"/{row.ros}", row.ros_type, row.location, launch)
 
 
+_TOPIC_PUBLISHED = Rule(
+    "topic-published",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "The topic that a node subscribes to is published.",
+    why=(
+        "The subscription waits without an error, and its callback is never called. ros2 topic "
+        "info shows a publisher count of 0."
+    ),
+    wrong="""
+self.commands = self.create_publisher(Twist, 'cmd_vel', 10)
+self.create_subscription(Twist, 'cmd_vell', self.receive, 10)
+""",
+    right="""
+self.commands = self.create_publisher(Twist, 'cmd_vel', 10)
+self.create_subscription(Twist, 'cmd_vel', self.receive, 10)
+""",
+    frame="start/pilot.py",
+)
+
+
 def _similar_topic(workspace: Workspace, end: End, alike: Sequence[_Offer]) -> Iterator[Fact]:
     """Yield the topic that a subscription surely means, of those of its type.
 
@@ -101,7 +123,7 @@ def _similar_topic(workspace: Workspace, end: End, alike: Sequence[_Offer]) -> I
     elif not any(end.node.topic(rule[1]) == meant for rule in end.node.remaps or ()):
         # Else it is a remapping of another name, which is said of it.
         yield _no_other_end(
-            TOPIC_PUBLISHED, f"nothing publishes {end.name}", end, meant, places[meant]
+            _TOPIC_PUBLISHED, f"nothing publishes {end.name}", end, meant, places[meant]
         )
 
 
@@ -162,6 +184,27 @@ def _meant_for(
             yield mismatch
 
 
+_TOPIC_SUBSCRIBED = Rule(
+    "topic-subscribed",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "The topic that a node publishes is the one that a controller waits for.",
+    why=(
+        "Commands are published, and the robot does not move. ros2 topic info shows a "
+        "subscription count of 0 for the topic of the node."
+    ),
+    wrong="self.commands = self.create_publisher(TwistStamped, 'cmd_vel', 10)",
+    right="self.commands = self.create_publisher(TwistStamped, 'drive_controller/cmd_vel', 10)",
+    frame="start/pilot.py",
+    beside={
+        "drive/rover.urdf": "",
+        "drive/controllers.yaml": "",
+        "drive/rover.launch.py": "Node(package='rover', executable='pilot'),",
+    },
+)
+
+
 def _unheard(
     workspace: Workspace, publisher: End, waiting: End, *, is_only: bool
 ) -> Mismatch | None:
@@ -180,7 +223,7 @@ def _unheard(
         f"nothing subscribes to {publisher.name}; did you mean {waiting.name} "
         f"({place.file_and_line})?"
     )
-    return Mismatch(TOPIC_SUBSCRIBED, message, at, place, is_certain)
+    return Mismatch(_TOPIC_SUBSCRIBED, message, at, place, is_certain)
 
 
 def _last_names(end: End, count: int) -> list[str]:
@@ -209,6 +252,28 @@ def _without_server(graph: Graph, meeting: Meeting) -> Iterator[Mismatch]:
             yield from _served_elsewhere(graph, meeting, client, uncalled)
 
 
+_SERVICE_SERVED = Rule(
+    "service-served",
+    "services",
+    NO_SERVICE,
+    SIMILAR,
+    "The service or action that a node calls is served.",
+    why=(
+        "The client waits for a server that does not exist: wait_for_service() or "
+        "wait_for_server() returns False after its timeout, or never returns."
+    ),
+    wrong="""
+self.create_service(Trigger, 'stop', self.serve)
+self.client = self.create_client(Trigger, 'stopp')
+""",
+    right="""
+self.create_service(Trigger, 'stop', self.serve)
+self.client = self.create_client(Trigger, 'stop')
+""",
+    frame="start/pilot.py",
+)
+
+
 def _served_elsewhere(
     graph: Graph, meeting: Meeting, client: End, uncalled: Sequence[End]
 ) -> Iterator[Mismatch]:
@@ -218,7 +283,7 @@ def _served_elsewhere(
         return
     [(meant, server)] = alike.items()
     what = f"nothing serves the {meeting.noun} {client.name}"
-    mismatch = _no_other_end(SERVICE_SERVED, what, client, meant, server.location)
+    mismatch = _no_other_end(_SERVICE_SERVED, what, client, meant, server.location)
     yield mismatch._replace(is_certain=client.is_certain and server.is_certain)
 
 

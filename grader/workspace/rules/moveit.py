@@ -14,10 +14,10 @@ from grader.workspace.graph.started_controllers import defined_controllers
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch, Use, among, corrections
 from grader.workspace.rules.rule_table import (
-    MOVEIT_ACTION,
-    MOVEIT_CONTROLLER,
-    MOVEIT_JOINTS,
-    PLANNING_LIST,
+    NO_CONTROLLER,
+    NO_PARAMETER,
+    SIMILAR,
+    Rule,
 )
 from grader.workspace.rules.spawners import started_controllers
 
@@ -47,6 +47,32 @@ def moveit_facts(workspace: Workspace) -> Iterator[Fact]:
             yield from _other_action(controller)
 
 
+_PLANNING_LIST = Rule(
+    "planning-list",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "The adapters of a planning pipeline of MoveIt are a list from Jazzy on.",
+    is_of_type=True,
+    why=(
+        "move_group of Jazzy and later declares a list of strings. A single string raises an "
+        "exception about the parameter type, and move_group ends at its start."
+    ),
+    wrong="""
+planning_plugin: ompl_interface/OMPLPlanner
+request_adapters: default_planner_request_adapters/FixWorkspaceBounds
+""",
+    right="""
+planning_plugins: [ompl_interface/OMPLPlanner]
+request_adapters: [default_planning_request_adapters/ValidateWorkspaceBounds]
+""",
+    frame="ompl_planning.yaml",
+    beside={
+        "arm/rover.urdf": "",
+    },
+)
+
+
 def _text_for_list(workspace: Workspace, tree: YamlNode) -> Iterator[Mismatch]:
     """Yield that the file of a pipeline has the form of Humble, and all stated releases are later.
 
@@ -61,7 +87,7 @@ def _text_for_list(workspace: Workspace, tree: YamlNode) -> Iterator[Mismatch]:
             "request_adapters is a text, so move_group stops: from Jazzy on it is a list, as "
             "planning_plugins is in place of planning_plugin"
         )
-        yield Mismatch(PLANNING_LIST, message, tree.key_location("request_adapters"))
+        yield Mismatch(_PLANNING_LIST, message, tree.key_location("request_adapters"))
 
 
 def _joints_and_groups(tree: YamlNode) -> Iterator[Use]:
@@ -112,6 +138,48 @@ def _names_of(workspace: Workspace, controller: _MoveItController) -> Iterator[U
         yield Use("joint", joint.text or "", joint.location, f"{name}.joints")
 
 
+_MOVEIT_CONTROLLER = Rule(
+    "moveit-controller",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "A spawner starts the controllers that MoveIt commands.",
+    why=(
+        "Planning succeeds and execution fails: MoveIt waits for an action that no controller "
+        "offers, then reports that its action client is not connected."
+    ),
+    wrong="""
+moveit_simple_controller_manager:
+  controller_names: [hand_controller]
+  hand_controller:
+    {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [arm_joint]}
+""",
+    right="""
+moveit_simple_controller_manager:
+  controller_names: [arm_controller]
+  arm_controller:
+    {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [arm_joint]}
+""",
+    frame="moveit_controllers.yaml",
+    beside={
+        "arm/rover.urdf": "",
+        "controllers.yaml": """
+controller_manager:
+  ros__parameters:
+    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+    hand_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+arm_controller:
+  ros__parameters:
+    {joints: [arm_joint], command_interfaces: [position], state_interfaces: [position]}
+hand_controller:
+  ros__parameters:
+    {joints: [arm_joint], command_interfaces: [position], state_interfaces: [position]}
+""",
+        "spawn/rover.launch.py": "",
+    },
+)
+
+
 def _not_started(controller: _MoveItController, left_out: Collection[str]) -> Iterator[Mismatch]:
     """Yield that no spawner starts a controller, while one starts others that move joints."""
     if controller.name in left_out:
@@ -119,7 +187,7 @@ def _not_started(controller: _MoveItController, left_out: Collection[str]) -> It
             f"controller_names: no spawner starts {quoted(controller.name)}: MoveIt waits for its "
             "action"
         )
-        yield Mismatch(MOVEIT_CONTROLLER, message, controller.location)
+        yield Mismatch(_MOVEIT_CONTROLLER, message, controller.location)
 
 
 def _not_spawned(workspace: Workspace) -> frozenset[str]:
@@ -133,6 +201,34 @@ def _not_spawned(workspace: Workspace) -> frozenset[str]:
     if started is None or started.isdisjoint(movers):
         return frozenset()
     return frozenset(movers - started)
+
+
+_MOVEIT_ACTION = Rule(
+    "moveit-action",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "MoveIt names the action of its controller.",
+    why=(
+        "MoveIt ignores the controller or waits for an action that does not exist. It plans, "
+        "but every execution fails and the robot does not move."
+    ),
+    wrong="""
+moveit_simple_controller_manager:
+  controller_names: [arm_controller]
+  arm_controller: {type: FollowJointTrajectory, action_ns: follow_trajectory, joints: [arm_joint]}
+""",
+    right="""
+moveit_simple_controller_manager:
+  controller_names: [arm_controller]
+  arm_controller:
+    {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [arm_joint]}
+""",
+    frame="moveit_controllers.yaml",
+    beside={
+        "arm/rover.urdf": "",
+    },
+)
 
 
 def _other_action(controller: _MoveItController) -> Iterator[Mismatch]:
@@ -149,7 +245,7 @@ def _other_action(controller: _MoveItController) -> Iterator[Mismatch]:
             f"MoveIt has no type {kind.text!r} of controllers, so it leaves out {controller.name}: "
             f"it has {enumerated([*moveit_actions()])}"
         )
-        yield Mismatch(MOVEIT_ACTION, message, kind.location, is_certain=False)
+        yield Mismatch(_MOVEIT_ACTION, message, kind.location, is_certain=False)
         return
     if action is None:
         if wanted is not None:
@@ -157,7 +253,7 @@ def _other_action(controller: _MoveItController) -> Iterator[Mismatch]:
                 f"{controller.name} has no action_ns, so MoveIt leaves it out: add action_ns: "
                 f"{wanted}"
             )
-            yield Mismatch(MOVEIT_ACTION, message, controller.section.location, kind.location)
+            yield Mismatch(_MOVEIT_ACTION, message, controller.section.location, kind.location)
         return
     if wanted is not None and action.text not in ("", wanted):
         message = (
@@ -165,7 +261,42 @@ def _other_action(controller: _MoveItController) -> Iterator[Mismatch]:
             f"{wanted!r}"
         )
         either = corrections(action.text or "", action.location, wanted)
-        yield Mismatch(MOVEIT_ACTION, message, action.location, kind.location, corrections=either)
+        yield Mismatch(_MOVEIT_ACTION, message, action.location, kind.location, corrections=either)
+
+
+_MOVEIT_JOINTS = Rule(
+    "moveit-joints",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "MoveIt gives a controller the joints that it has.",
+    why=(
+        "The controller rejects trajectories for joints that it does not have, or MoveIt finds "
+        "no controller for some joints. The robot does not move."
+    ),
+    wrong="""
+moveit_simple_controller_manager:
+  controller_names: [arm_controller]
+  arm_controller: {type: FollowJointTrajectory, joints: [arm_joint, hand_joint]}
+""",
+    right="""
+moveit_simple_controller_manager:
+  controller_names: [arm_controller]
+  arm_controller:
+    {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [arm_joint]}
+""",
+    frame="moveit_controllers.yaml",
+    beside={
+        "two/rover.urdf": """
+<robot name="rover">
+  <link name="base_link"/> <link name="arm"/> <link name="hand"/>
+  <joint name="arm_joint" type="continuous"><parent link="base_link"/><child link="arm"/></joint>
+  <joint name="hand_joint" type="continuous"><parent link="arm"/><child link="hand"/></joint>
+</robot>
+""",
+        "arm/controllers.yaml": "",
+    },
+)
 
 
 def _other_joints(workspace: Workspace, controller: _MoveItController) -> Iterator[Mismatch]:
@@ -190,7 +321,7 @@ def _other_joints(workspace: Workspace, controller: _MoveItController) -> Iterat
             f"{controller.name}.joints: MoveIt and the controller "
             f"({controlled.location.file_and_line}) have other joints: {', '.join(differing)}"
         )
-        yield Mismatch(MOVEIT_JOINTS, message, joints.location, controlled.location)
+        yield Mismatch(_MOVEIT_JOINTS, message, joints.location, controlled.location)
 
 
 def _controlled_joints(workspace: Workspace, name: str) -> YamlNode | None:

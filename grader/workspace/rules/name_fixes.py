@@ -12,8 +12,8 @@ from grader.files.reading import URDF_LIMIT
 from grader.ros.package.package import CMAKE, MANIFEST, Package
 from grader.ros.python.call_extents import ends_of_calls
 from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.dependencies import DEPENDENCY_DECLARED
 from grader.workspace.rules.names import Correction, Mismatch
-from grader.workspace.rules.rule_table import DEPENDENCY_DECLARED
 
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".sdf", ".txt", ".cfg")
 _MAX_KEY = 400  # characters from a key to its value

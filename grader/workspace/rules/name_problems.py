@@ -12,7 +12,38 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.name_fixes import NameFixes
 from grader.workspace.rules.names import Mismatch
 from grader.workspace.rules.reading import read_agreement
-from grader.workspace.rules.rule_table import FILE_USED
+from grader.workspace.rules.rule_table import (
+    UNUSED,
+    Rule,
+)
+
+_FILE_USED = Rule(
+    "file-used",
+    "files",
+    UNUSED,
+    UNUSED,
+    "Another file names each file of the robot.",
+    why=(
+        "No program loads the file, so an edit of it changes nothing. Parameters keep their "
+        "defaults, and what the file describes is missing in the robot."
+    ),
+    wrong="Node(package='turtlesim', executable='turtlesim_node'),",
+    right="""
+Node(
+    package='turtlesim',
+    executable='turtlesim_node',
+    parameters=[os.path.join(share, 'config', 'speed.yaml')],
+),
+""",
+    beside={
+        "speed.yaml": """
+/**:
+  ros__parameters:
+    background_r: 100
+""",
+    },
+    at="config/speed.yaml",
+)
 
 
 def name_problems(workspace: Workspace) -> tuple[Problem, ...]:
@@ -36,7 +67,7 @@ def name_problems(workspace: Workspace) -> tuple[Problem, ...]:
         problems.append(problem)
     for at in agreement.unused:
         message = "no other file of the workspace names this file"
-        problems.append(FILE_USED.problem(message, at))
+        problems.append(_FILE_USED.problem(message, at))
     # Of a macro of xacro that several robots call, each place once.
     by_place: dict[tuple[object, ...], Problem] = {}
     for problem in problems:

@@ -13,9 +13,316 @@ from grader.base.problems import NO_FIXES, Fixes
 from grader.base.source import Location
 from grader.base.text import counted, quoted
 from grader.workspace.graph.compared_robots import ComparedRobots
-from grader.workspace.rules.rule_table import DEFINED, FAMILIES, AnyFamily, DefinedKind, Rule
+from grader.workspace.rules.rule_table import (
+    FAMILIES,
+    NO_ARGUMENT,
+    NO_CONTROLLER,
+    NO_FRAME,
+    NO_PARAMETER,
+    NO_PROGRAM,
+    NO_TOPIC,
+    SIMILAR,
+    AnyFamily,
+    DefinedKind,
+    Rule,
+)
 
 _MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either way
+
+
+_FRAME_DEFINED = Rule(
+    "frame-defined",
+    "frames",
+    NO_FRAME,
+    SIMILAR,
+    "The frames that files name exist.",
+    why=(
+        "tf2 has no transform for a frame that nothing publishes: lookups fail with "
+        "LookupException, and RViz prints that the frame does not exist."
+    ),
+    wrong="""
+Node(
+    package='tf2_ros',
+    executable='static_transform_publisher',
+    arguments=['--frame-id', 'base_lnk', '--child-frame-id', 'camera'],
+),
+""",
+    right="""
+Node(
+    package='tf2_ros',
+    executable='static_transform_publisher',
+    arguments=['--frame-id', 'base_link', '--child-frame-id', 'camera'],
+),
+""",
+)
+
+_LINK_DEFINED = Rule(
+    "link-defined",
+    "frames",
+    NO_FRAME,
+    SIMILAR,
+    "The links that files name are in the robot.",
+    why=(
+        "Gazebo ignores a <gazebo> element for an unknown link, so its friction or sensor is "
+        "missing. MoveIt ignores unknown links of an SRDF."
+    ),
+    wrong='<gazebo reference="base_lnk"><mu1>0.9</mu1></gazebo>',
+    right='<gazebo reference="base_link"><mu1>0.9</mu1></gazebo>',
+    frame="rover.urdf",
+)
+
+JOINT_DEFINED = Rule(
+    "joint-defined",
+    "frames",
+    NO_FRAME,
+    SIMILAR,
+    "The joints that files name are in the robot.",
+    why=(
+        "A controller cannot claim the interfaces of an unknown joint, so it does not become "
+        "active. MoveIt ignores the limits of such a joint."
+    ),
+    wrong="""
+joint_limits:
+  arm_jiont: {has_velocity_limits: true, max_velocity: 0.9}
+""",
+    right="""
+joint_limits:
+  arm_joint: {has_velocity_limits: true, max_velocity: 0.9}
+""",
+    frame="joint_limits.yaml",
+    beside={
+        "arm/rover.urdf": "",
+    },
+)
+
+_GROUP_DEFINED = Rule(
+    "group-defined",
+    "frames",
+    NO_FRAME,
+    SIMILAR,
+    "The groups that files name are in the SRDF.",
+    why=(
+        "MoveIt looks up solvers and planners by the name of the group. Settings under another "
+        "name have no effect, and a group may have no kinematics solver."
+    ),
+    wrong="""
+arms:
+  kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin
+""",
+    right="""
+arm:
+  kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin
+""",
+    frame="kinematics.yaml",
+    beside={
+        "arm/rover.urdf": "",
+        "rover.srdf": "",
+    },
+)
+
+_CONTROLLER_DEFINED = Rule(
+    "controller-defined",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "The controllers that files name are defined.",
+    why=(
+        "The controller manager prints that the 'type' param was not defined, the spawner ends "
+        "with an error, and the controller is not loaded."
+    ),
+    wrong="""
+Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
+Node(package='controller_manager', executable='spawner', arguments=['arm_contoller']),
+""",
+    right="""
+Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
+Node(package='controller_manager', executable='spawner', arguments=['arm_controller']),
+""",
+    frame="control/rover.launch.py",
+    beside={
+        "arm/rover.urdf": "",
+        "arm/controllers.yaml": "",
+    },
+)
+
+_PARAMETER_DEFINED = Rule(
+    "parameter-defined",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "A node declares the parameters that it is given and those that its code reads.",
+    why=(
+        "ROS 2 ignores a value for an undeclared parameter without a message, so the default "
+        "counts. Code that reads one stops with ParameterNotDeclaredException."
+    ),
+    wrong="Node(package='rover', executable='joystick', parameters=[{'sped': 2.0}]),",
+    right="Node(package='rover', executable='joystick', parameters=[{'speed': 2.0}]),",
+    beside={
+        "joystick.py": "",
+    },
+)
+
+_PLUGIN_SECTION = Rule(
+    "plugin-section",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "The plugins of a list have a section beside it.",
+    why=(
+        "Nav2 reads the class of a plugin from its section. Without it the node prints that it "
+        "cannot get the 'plugin' param and stops; a sensor source keeps defaults."
+    ),
+    wrong="""
+plugins: [obstacles]
+obstacle_layer:
+  plugin: nav2_costmap_2d::ObstacleLayer
+""",
+    right="""
+plugins: [obstacle_layer]
+obstacle_layer:
+  plugin: nav2_costmap_2d::ObstacleLayer
+""",
+    frame="costmap.yaml",
+)
+
+_LAUNCH_ARGUMENT = Rule(
+    "launch-argument",
+    "arguments",
+    NO_ARGUMENT,
+    SIMILAR,
+    "The arguments that an include passes are declared.",
+    why=(
+        "An include accepts unknown arguments without a message. The included file uses its "
+        "default, such as another world or no simulated time."
+    ),
+    wrong="""
+IncludeLaunchDescription(
+    os.path.join(gazebo, 'launch', 'gz_sim.launch.py'),
+    launch_arguments={'gz_arg': '-r empty.sdf'}.items(),
+),
+""",
+    right="""
+IncludeLaunchDescription(
+    os.path.join(gazebo, 'launch', 'gz_sim.launch.py'),
+    launch_arguments={'gz_args': '-r empty.sdf'}.items(),
+),
+""",
+)
+
+_XACRO_ARGUMENT = Rule(
+    "xacro-argument",
+    "arguments",
+    NO_ARGUMENT,
+    SIMILAR,
+    "The arguments that xacro gets are declared.",
+    why=(
+        "xacro accepts unknown arguments without a message. The robot is built with its "
+        "defaults, and the value has no effect."
+    ),
+    wrong="""
+import os
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    file = os.path.join(get_package_share_directory('rover'), 'urdf', 'base.xacro')
+    robot = Command(['xacro ', file, ' prefx:=a_'])
+    return LaunchDescription([Node(
+        package='robot_state_publisher', executable='robot_state_publisher',
+        parameters=[{'robot_description': robot}],
+    )])
+""",
+    right="""
+import os
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    file = os.path.join(get_package_share_directory('rover'), 'urdf', 'base.xacro')
+    robot = Command(['xacro ', file, ' prefix:=a_'])
+    return LaunchDescription([Node(
+        package='robot_state_publisher', executable='robot_state_publisher',
+        parameters=[{'robot_description': robot}],
+    )])
+""",
+    frame="xacro.launch.py",
+    beside={
+        "base.xacro": """
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="prefix" default=""/>
+  <link name="$(arg prefix)base_link"/>
+</robot>
+""",
+    },
+)
+
+_NODE_STARTED = Rule(
+    "node-started",
+    "programs",
+    NO_PROGRAM,
+    SIMILAR,
+    "A launch file starts the nodes that a lifecycle manager manages.",
+    why=(
+        "The lifecycle manager waits for the services of a node that nothing starts. It "
+        "activates no node, so Nav2 does not start."
+    ),
+    wrong="""
+Node(package='nav2_map_server', executable='map_server', name='map_server'),
+Node(
+    package='nav2_lifecycle_manager',
+    executable='lifecycle_manager',
+    parameters=[{'node_names': ['mapserver']}],
+),
+""",
+    right="""
+Node(package='nav2_map_server', executable='map_server', name='map_server'),
+Node(
+    package='nav2_lifecycle_manager',
+    executable='lifecycle_manager',
+    parameters=[{'node_names': ['map_server']}],
+),
+""",
+)
+
+_TOPIC_DEFINED = Rule(
+    "topic-defined",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A node has the topic that a remapping replaces, and what code reads is published.",
+    why=(
+        "A remapping without a match changes nothing and prints nothing. The node keeps its own"
+        " topic, and no message arrives on the other name."
+    ),
+    wrong="""
+Node(package='rover', executable='joystick', remappings=[('cmd_vell', 'drive/cmd_vel')]),
+""",
+    right="""
+Node(package='rover', executable='joystick', remappings=[('cmd_vel', 'drive/cmd_vel')]),
+""",
+    beside={
+        "joystick.py": "",
+    },
+)
+
+# What is wrong where a name of a kind is not defined.
+DEFINED: Mapping[DefinedKind, Rule] = {
+    "frame": _FRAME_DEFINED,
+    "link": _LINK_DEFINED,
+    "joint": JOINT_DEFINED,
+    "group": _GROUP_DEFINED,
+    "controller": _CONTROLLER_DEFINED,
+    "plugin section": _PLUGIN_SECTION,
+    "parameter": _PARAMETER_DEFINED,
+    "launch argument": _LAUNCH_ARGUMENT,
+    "xacro argument": _XACRO_ARGUMENT,
+    "node": _NODE_STARTED,
+    "topic": _TOPIC_DEFINED,
+}
 
 
 class Definition(NamedTuple):

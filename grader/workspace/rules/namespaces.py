@@ -12,7 +12,9 @@ from grader.ros.launch.node_parameters import is_key_of
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch
 from grader.workspace.rules.rule_table import (
-    PARAMETER_NAMESPACE,
+    NO_PARAMETER,
+    SIMILAR,
+    Rule,
 )
 
 
@@ -35,6 +37,42 @@ def namespace_facts(workspace: Workspace) -> Iterator[Fact]:
                         said.add(fact.location)
 
 
+_PARAMETER_NAMESPACE = Rule(
+    "parameter-namespace",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "The section of a node has the node's namespace.",
+    why=(
+        "rcl compares the key with the full name of the node. The node ignores the section "
+        "without a message and starts with its defaults."
+    ),
+    wrong="""
+joystick:
+  ros__parameters:
+    speed: 2.0
+""",
+    right="""
+/robot1/joystick:
+  ros__parameters:
+    speed: 2.0
+""",
+    frame="joystick.yaml",
+    beside={
+        "joystick.py": "",
+        "rover.launch.py": """
+Node(
+    package='rover',
+    executable='joystick',
+    name='joystick',
+    namespace='robot1',
+    parameters=[os.path.join(share, 'config', 'joystick.yaml')],
+),
+""",
+    },
+)
+
+
 def _other_namespace(
     workspace: Workspace, tree: YamlNode, node: StartedNode, keys: Mapping[str, tuple[str, ...]]
 ) -> Iterator[Compared | Mismatch]:
@@ -54,4 +92,4 @@ def _other_namespace(
         f"{same[0]}: write {quoted('/**/' + full.rpartition('/')[2])}, which matches any namespace"
     )
     at = tree.key_location(*keys[same[0]])
-    yield Mismatch(PARAMETER_NAMESPACE, message, at, node.location, is_certain=node.when is True)
+    yield Mismatch(_PARAMETER_NAMESPACE, message, at, node.location, is_certain=node.when is True)

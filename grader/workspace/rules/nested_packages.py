@@ -7,8 +7,40 @@ from grader.ros.package.finding import IGNORING
 from grader.ros.package.package import MANIFEST
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, warning
-from grader.workspace.rules.rule_table import PACKAGE_NESTED
+from grader.workspace.rules.rule_table import (
+    NOT_BUILT,
+    Rule,
+)
 from grader.workspace.rules.used_packages import OF_TESTS
+
+_PACKAGE_NESTED = Rule(
+    "package-nested",
+    "builds",
+    NOT_BUILT,
+    NOT_BUILT,
+    "No package is below the folder of another one, where colcon does not look.",
+    why=(
+        "colcon does not search below a package. The inner one is not built, and ros2 launch "
+        "reports that the package is not found."
+    ),
+    wrong="set(CMAKE_CXX_STANDARD 17)",
+    right="add_subdirectory(arm)",
+    frame="CMakeLists.txt",
+    beside={
+        "package.xml": "",
+        "../rover/arm/CMakeLists.txt": "project(arm)",
+        "../rover/arm/package.xml": """
+<package format="3">
+  <name>arm</name>
+  <version>1.0.0</version>
+  <description>A part of a rover.</description>
+  <maintainer email="a@example.com">A</maintainer>
+  <license>MIT</license>
+</package>
+""",
+    },
+    at="rover/arm/package.xml",
+)
 
 
 def nested_package_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -31,4 +63,4 @@ def nested_package_facts(workspace: Workspace) -> Iterator[Fact]:
                     f"the package in {folder} is in the folder of the package {package.name!r}, "
                     "where colcon does not look: it is not built; put it beside the other one"
                 )
-                yield warning(PACKAGE_NESTED, message, Location(path, 1, 1))
+                yield warning(_PACKAGE_NESTED, message, Location(path, 1, 1))

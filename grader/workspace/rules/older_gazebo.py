@@ -7,12 +7,37 @@ from grader.base.text import counted
 from grader.workspace.graph.gazebo_topics import roots
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, warning
-from grader.workspace.rules.rule_table import OLDER_GAZEBO
+from grader.workspace.rules.rule_table import (
+    FORM,
+    Rule,
+)
 
 _PACKAGES = ("ros_gz", "ros_gz_sim", "ros_gz_bridge", "ros_gz_image", "gz_ros2_control")
 _FOR_IGNITION = frozenset(("foxy", "galactic", "humble", "iron"))  # releases
 _OLDER = ("ignition::gazebo::", "ignition-gazebo-", "libignition-gazebo-")
 _NEWER = ("gz::sim::", "gz-sim-", "libgz-sim-")
+
+
+_OLDER_GAZEBO = Rule(
+    "older-gazebo",
+    "words",
+    FORM,
+    FORM,
+    "Plugins have the names of Gazebo, where the workspace uses that in place of Ignition.",
+    why=(
+        "Gazebo still loads such plugins with a warning. A later release does not know their "
+        "names, and the sensor or motion is then missing."
+    ),
+    wrong="""
+<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>
+<plugin filename="ignition-gazebo-imu-system" name="ignition::gazebo::systems::Imu"/>
+""",
+    right="""
+<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>
+<plugin filename="gz-sim-imu-system" name="gz::sim::systems::Imu"/>
+""",
+    frame="world.sdf",
+)
 
 
 def older_gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -42,7 +67,7 @@ def older_gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
     others = len({place.path for _, place in plugins}) - 1
     if others:
         message += f"; {counted(others, 'other file has', 'other files have')} such names, too"
-    yield warning(OLDER_GAZEBO, message, at)
+    yield warning(_OLDER_GAZEBO, message, at)
 
 
 def _uses_packages(workspace: Workspace) -> bool:

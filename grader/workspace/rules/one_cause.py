@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from grader.base.problems import Problem
 from grader.ros.installation.package_problems import EMPTY_GLOB, MESH_PATH
 from grader.ros.xml.xml_problems import MISMATCHED_TAG, RECOVERED
-from grader.workspace.rules.rule_table import FILE_INSTALLED
+from grader.workspace.rules.files import FILE_INSTALLED
 
 _Line = tuple[str, int]
 

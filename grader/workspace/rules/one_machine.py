@@ -15,9 +15,8 @@ from grader.workspace.model.stated_releases import releases_in_path
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    ENVIRONMENT_VARIABLE,
-    HOME_PATH,
-    RELEASE_PATH,
+    ONE_MACHINE,
+    Rule,
 )
 
 # A folder of a user, or a workspace of root.
@@ -117,6 +116,22 @@ def _machine_paths(text: str) -> Iterator[_MachinePath]:
             yield _MachinePath(f"{before[1]}{path[0]}", start + before.start(1))
 
 
+_HOME_PATH = Rule(
+    "home-path",
+    "machine",
+    ONE_MACHINE,
+    ONE_MACHINE,
+    "No file names a folder of one user's machine.",
+    why=(
+        "The folder does not exist for another user, in a container or on the robot. The "
+        "program stops there or runs without the file."
+    ),
+    wrong="self.path = '/home/ann/rover/map.yaml'",
+    right="self.path = 'map.yaml'",
+    frame="tick/pilot.py",
+)
+
+
 def _home_values(launch: Launch, topics: _TopicNames) -> Iterator[Mismatch]:
     """Yield the first value of a parameter in a launch file that is a path in a home folder."""
     said = {reference.location for reference in launch.references}
@@ -130,7 +145,7 @@ def _home_values(launch: Launch, topics: _TopicNames) -> Iterator[Mismatch]:
                     if value.location not in said:
                         shown = quoted(cut(text, _MAX_SHOWN))
                         message = f"the path {shown} is of one machine"
-                        yield warning(HOME_PATH, message, value.location)
+                        yield warning(_HOME_PATH, message, value.location)
                     return
 
 
@@ -141,6 +156,24 @@ def _said_paths(launch: Launch) -> list[str]:
         for given in node.parameters or ():
             said += [given.path, *(str(value.value) for value in given.values.values())]
     return said
+
+
+_RELEASE_PATH = Rule(
+    "release-path",
+    "machine",
+    ONE_MACHINE,
+    ONE_MACHINE,
+    "Files of ROS 2 are found by packages, and not in a release's folder.",
+    why=(
+        "The folder is missing where another release is installed, so the file is not found. If"
+        " both are installed, the file may not fit the nodes."
+    ),
+    wrong="""
+self.tree = '/opt/ros/humble/share/nav2_bt_navigator/behavior_trees/follow_point.xml'
+""",
+    right="self.tree = 'follow_point.xml'",
+    frame="tick/pilot.py",
+)
 
 
 def _release_paths(source: Source, releases: Sequence[Release]) -> Iterator[Mismatch]:
@@ -159,7 +192,7 @@ def _release_paths(source: Source, releases: Sequence[Release]) -> Iterator[Mism
                 f"the path {quoted(cut(path[0], _MAX_SHOWN))} is of {path['release']}, the "
                 f"workspace is for {stated}: find the package in place of it"
             )
-            yield warning(RELEASE_PATH, message, source.at(path.start()))
+            yield warning(_RELEASE_PATH, message, source.at(path.start()))
             return
 
 
@@ -193,13 +226,30 @@ def _home_paths(source: Source, said: Collection[str], topics: _TopicNames) -> I
         message = f"the path {quoted(cut(first.text, _MAX_SHOWN))} is of one machine"
         if len(paths) > 1:
             message += f"; the file has {len(paths)} such paths"
-        yield warning(HOME_PATH, message, source.at(first.offset))
+        yield warning(_HOME_PATH, message, source.at(first.offset))
 
 
 def _is_in_comment(text: str, offset: int) -> bool:
     """Return whether a line is a comment up to a place."""
     start = text.rfind("\n", 0, offset) + 1
     return text[start:offset].lstrip().startswith(("#", "//", "*", "<!--", "--"))
+
+
+_ENVIRONMENT_VARIABLE = Rule(
+    "environment-variable",
+    "machine",
+    ONE_MACHINE,
+    ONE_MACHINE,
+    "A launch file gives an environment variable a default.",
+    why=(
+        "Where the variable is not set, ros2 launch stops with an error such as KeyError. It "
+        "works only in a shell that sets the variable."
+    ),
+    wrong="Node(package='turtlesim', executable='turtlesim_node', name=os.environ['ROVER']),",
+    right="""
+Node(package='turtlesim', executable='turtlesim_node', name=os.environ.get('ROVER', 'rover')),
+""",
+)
 
 
 def _variables(workspace: Workspace) -> Iterator[Mismatch]:
@@ -219,7 +269,7 @@ def _variables(workspace: Workspace) -> Iterator[Mismatch]:
             f"the launch file ends with an error where the environment variable {name} is not set: "
             f"give it a default{too if others else ''}"
         )
-        yield warning(ENVIRONMENT_VARIABLE, message, needed_at[0])
+        yield warning(_ENVIRONMENT_VARIABLE, message, needed_at[0])
 
 
 def _needed_variables(source: Source) -> Iterator[tuple[str, Location]]:

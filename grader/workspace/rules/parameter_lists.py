@@ -13,7 +13,11 @@ from grader.ros.launch.node_parameters import value_in_file
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch
 from grader.workspace.rules.parameters import parameter_trees
-from grader.workspace.rules.rule_table import PARAMETER_LIST
+from grader.workspace.rules.rule_table import (
+    NO_PARAMETER,
+    SIMILAR,
+    Rule,
+)
 
 _RCL_TYPES = {bool: "bool", int: "integer", float: "double", str: "string"}
 _IN_WORDS = {bool: "booleans", int: "integers", float: "doubles", str: "strings"}
@@ -34,6 +38,34 @@ def list_facts(workspace: Workspace) -> Iterator[Fact]:
                 yield from _without_value(value)
 
 
+_PARAMETER_LIST = Rule(
+    "parameter-list",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "A list in a parameter file has values of one type, and a key has a value.",
+    why=(
+        "rcl refuses the whole file, for example with 'Sequence should be of same type', so the"
+        " node ends at its start. A mix of 1.0 and 0 is enough."
+    ),
+    wrong="""
+pilot:
+  ros__parameters:
+    gains: [2.0, 0]
+""",
+    right="""
+pilot:
+  ros__parameters:
+    gains: [2.0, 0.0]
+""",
+    frame="pilot.yaml",
+    beside={
+        "start/pilot.py": "self.declare_parameter('gains', [1.0, 0.0])",
+        "tune/rover.launch.py": "",
+    },
+)
+
+
 def _refused_list(value: YamlValue) -> Iterator[Mismatch]:
     """Yield the first entry of a list that rcl does not take."""
     items = value.node.items
@@ -41,7 +73,7 @@ def _refused_list(value: YamlValue) -> Iterator[Mismatch]:
         if isinstance(item.value, list) and isinstance(following.value, list):
             words = f"Sequences cannot be key at line {following.location.line}"
             message = f"{value.said}: rcl reads no lists in a list, and refuses the file: {words}"
-            yield Mismatch(PARAMETER_LIST, message, following.location)
+            yield Mismatch(_PARAMETER_LIST, message, following.location)
             return
     entries = [entry for item in items for entry in _entries_in(item)]
     kinds = [kind for entry in entries if (kind := _type_of(entry)) is not None]
@@ -76,12 +108,12 @@ def _mixed(value: YamlValue, first: type[object], item: YamlNode, kind: type[obj
         advice = "; write each number with a decimal point"
     if any(isinstance(each.value, dict) for each in value.node.items):
         message = f"{value.said}: rcl reads no mappings in a list, and refuses the file: {words}"
-        return Mismatch(PARAMETER_LIST, message, at)
+        return Mismatch(_PARAMETER_LIST, message, at)
     message = (
         f"{value.said}: the list begins with {_IN_WORDS[first]}, and {quoted(item.text or '')} is "
         f"none, so rcl refuses the file: {words}{advice}"
     )
-    return Mismatch(PARAMETER_LIST, message, at)
+    return Mismatch(_PARAMETER_LIST, message, at)
 
 
 def _type_of(node: YamlNode) -> type[object] | None:
@@ -98,5 +130,5 @@ def _without_value(value: YamlValue) -> Iterator[Mismatch]:
         if not text and not node.is_string and not node.has_type:
             line = node.location.line
             message = f"{value.said} has no value, so rcl refuses the file: No value at line {line}"
-            yield Mismatch(PARAMETER_LIST, message, node.location)
+            yield Mismatch(_PARAMETER_LIST, message, node.location)
             return

@@ -28,12 +28,11 @@ from grader.workspace.rules.names import (
     warning,
 )
 from grader.workspace.rules.rule_table import (
-    PARAMETER_EFFECT,
-    PARAMETER_NAME,
-    PARAMETER_RELEASE,
-    PARAMETER_REQUIRED,
-    PARAMETER_TYPE,
-    PARAMETER_VALUE,
+    NO_EFFECT,
+    NO_PARAMETER,
+    NO_SUCH_PARAMETER,
+    OTHER_RELEASE,
+    SIMILAR,
     Rule,
 )
 
@@ -116,6 +115,25 @@ class _ParameterMatch(NamedTuple):
         return f"{self.table.prefix}{name}"
 
 
+_PARAMETER_NAME = Rule(
+    "parameter-name",
+    "parameters",
+    NO_SUCH_PARAMETER,
+    NO_SUCH_PARAMETER,
+    "The parameters of a well-known node are those that it has.",
+    why=(
+        "ROS 2 ignores a value for an undeclared parameter without a message. The node runs "
+        "with its default, so the setting seems to do nothing."
+    ),
+    wrong="""
+Node(package='robot_localization', executable='ekf_node', parameters=[{'two_d_mod': True}]),
+""",
+    right="""
+Node(package='robot_localization', executable='ekf_node', parameters=[{'two_d_mode': True}]),
+""",
+)
+
+
 def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismatch]:
     """Yield what is wrong with the parameters of a node in each of the stated releases.
 
@@ -129,7 +147,7 @@ def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismat
     readers = {release: _NodeReader(given, release) for release in read}
     releases = [release for release in stated or read if known.is_in(release)]
     for finding in _findings_in_all([readers[release] for release in releases]):
-        if finding.mismatch.rule is PARAMETER_NAME:
+        if finding.mismatch.rule is _PARAMETER_NAME:
             yield _unknown_name(given, finding, readers, stated)
         else:
             yield finding.mismatch
@@ -164,6 +182,46 @@ def default_in(given: GivenNode, name: str, release: Release) -> Any:
     return _NodeReader(given, release).default(name)
 
 
+_PARAMETER_RELEASE = Rule(
+    "parameter-release",
+    "parameters",
+    OTHER_RELEASE,
+    OTHER_RELEASE,
+    "The parameters of a well-known node are those of the stated release.",
+    why=(
+        "A node of another release does not declare the parameter, so the value is ignored "
+        "without a message. Settings from a tutorial then have no effect."
+    ),
+    wrong="""
+controller_manager:
+  ros__parameters:
+    drive_controller: {type: diff_drive_controller/DiffDriveController}
+drive_controller:
+  ros__parameters:
+    left_wheel_names: [left_joint]
+    right_wheel_names: [right_joint]
+    wheel_separation: 0.3
+    wheel_radius: 0.05
+    use_stamped_vel: true
+""",
+    right="""
+controller_manager:
+  ros__parameters:
+    drive_controller: {type: diff_drive_controller/DiffDriveController}
+drive_controller:
+  ros__parameters:
+    left_wheel_names: [left_joint]
+    right_wheel_names: [right_joint]
+    wheel_separation: 0.3
+    wheel_radius: 0.05
+""",
+    frame="controllers.yaml",
+    beside={
+        "drive/rover.urdf": "",
+    },
+)
+
+
 def _of_other_release(
     given: GivenNode,
     name: str,
@@ -178,13 +236,90 @@ def _of_other_release(
     for owner in (f"{given.node}/", f"{given.node.rpartition('/')[2]}/"):
         other = other_name("parameter", owner + name, stated, shown=owner)
         if other is not None:
-            return warning(PARAMETER_RELEASE, other.message, at)
+            return warning(_PARAMETER_RELEASE, other.message, at)
     if RELEASES.index(releases[-1]) < RELEASES.index(stated[0]):
         gone = RELEASES[RELEASES.index(releases[-1]) + 1]
         text = f"there is no parameter {name!r} from {gone.title()} on"
     else:
         text = f"there is no parameter {name!r} before {releases[0].title()}"
-    return warning(PARAMETER_RELEASE, text, at)
+    return warning(_PARAMETER_RELEASE, text, at)
+
+
+PARAMETER_REQUIRED = Rule(
+    "parameter-required",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "A node gets the parameters without which it stops.",
+    why=(
+        "The node prints an error and ends, so ros2 launch reports that the process has died. A"
+        " lifecycle node fails to configure."
+    ),
+    wrong="Node(package='robot_state_publisher', executable='robot_state_publisher'),",
+    right="""
+Node(
+    package='robot_state_publisher',
+    executable='robot_state_publisher',
+    parameters=[{'robot_description': robot}],
+),
+""",
+)
+
+PARAMETER_TYPE = Rule(
+    "parameter-type",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "A parameter has the type that its node declares.",
+    is_of_type=True,
+    why=(
+        "Nodes do not convert types: 2 is no double and '2.0' is no number. The declaration "
+        "raises InvalidParameterTypeException, and the node ends at its start."
+    ),
+    wrong="Node(package='rover', executable='joystick', parameters=[{'speed': 'fast'}]),",
+    right="Node(package='rover', executable='joystick', parameters=[{'speed': 2.0}]),",
+    beside={
+        "joystick.py": "",
+    },
+)
+
+_PARAMETER_VALUE = Rule(
+    "parameter-value",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "A parameter has a value that its node accepts.",
+    why=(
+        "The node validates the value and refuses it with an error at its start. It stops, or "
+        "the controller is not loaded."
+    ),
+    wrong="""
+controller_manager:
+  ros__parameters:
+    drive_controller: {type: diff_drive_controller/DiffDriveController}
+drive_controller:
+  ros__parameters:
+    left_wheel_names: [left_joint]
+    right_wheel_names: [right_joint]
+    wheel_separation: 0.3
+    wheel_radius: 0.0
+""",
+    right="""
+controller_manager:
+  ros__parameters:
+    drive_controller: {type: diff_drive_controller/DiffDriveController}
+drive_controller:
+  ros__parameters:
+    left_wheel_names: [left_joint]
+    right_wheel_names: [right_joint]
+    wheel_separation: 0.3
+    wheel_radius: 0.05
+""",
+    frame="controllers.yaml",
+    beside={
+        "drive/rover.urdf": "",
+    },
+)
 
 
 class _NodeReader:
@@ -398,11 +533,11 @@ class _NodeReader:
                 f"the parameter {self._given.shown(name)!r} is {_shown(given.value)}; "
                 f"{self._given.said} {wrong}"
             )
-            yield self._certain(PARAMETER_VALUE, name, message, given.location)
+            yield self._certain(_PARAMETER_VALUE, name, message, given.location)
         wrong = self._wrong_library(name, match.row, given.value)
         if wrong:
             message = f"{self._given.said} {wrong}"
-            yield self._certain(PARAMETER_VALUE, name, message, given.location)
+            yield self._certain(_PARAMETER_VALUE, name, message, given.location)
 
     def _wrong_library(self, name: str, row: ParameterRow, value: Any) -> str:
         """Return, in words, that a node stops at a library of plugins; empty if it does not."""
@@ -478,7 +613,7 @@ class _NodeReader:
         if similar and is_misspelling(section, similar) and are_of_one_side(section, similar):
             guess = f"; did you mean {quoted(similar)}?"
         message = f"{self._given.said} has no parameter {quoted(section)}{guess}"
-        mismatch = warning(PARAMETER_NAME, message, at)
+        mismatch = warning(_PARAMETER_NAME, message, at)
         return _RowFinding(section, mismatch)
 
     def _misspelt(self, name: str, at: Location, near_name: str) -> _RowFinding:
@@ -489,7 +624,7 @@ class _NodeReader:
             f"mean {quoted(self._given.shown(near_name))}?"
         )
         mismatch = Mismatch(
-            PARAMETER_NAME,
+            _PARAMETER_NAME,
             message,
             at,
             is_certain=False,
@@ -563,6 +698,29 @@ class _NodeReader:
                 yield row, f"{table.prefix}{row.name.replace(f'<{place}>', given.value)}"
 
 
+_PARAMETER_EFFECT = Rule(
+    "parameter-effect",
+    "parameters",
+    NO_EFFECT,
+    NO_EFFECT,
+    "The parameters of a well-known node have an effect under the values of others.",
+    why=(
+        "The node accepts the value without a warning and does not use it. Its behaviour stays "
+        "the same, whatever the value is."
+    ),
+    wrong="""
+Node(package='robot_localization', executable='ekf_node', parameters=[{'odom0_relative': True}]),
+""",
+    right="""
+Node(
+    package='robot_localization',
+    executable='ekf_node',
+    parameters=[{'odom0': 'wheels/odom', 'odom0_relative': True}],
+),
+""",
+)
+
+
 class _OffSwitch(NamedTuple):
     """A parameter by whose value, or absence, others have no effect."""
 
@@ -573,7 +731,7 @@ class _OffSwitch(NamedTuple):
         """Return that a parameter has no effect."""
         at = value.name_location
         message = f"{given.said} does not use {given.shown(name)}{self.words}"
-        mismatch = warning(PARAMETER_EFFECT, message, at)
+        mismatch = warning(_PARAMETER_EFFECT, message, at)
         return _RowFinding(name, mismatch)
 
 

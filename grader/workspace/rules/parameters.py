@@ -34,6 +34,7 @@ from grader.ros.xml.parsing import XmlFault, XmlFile
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.bridges import bridge_files
 from grader.workspace.rules.names import (
+    DEFINED,
     Compared,
     Definition,
     Fact,
@@ -45,20 +46,12 @@ from grader.workspace.rules.names import (
     cost_of_guess,
     warning,
 )
-from grader.workspace.rules.parameter_rules import type_in_words
+from grader.workspace.rules.parameter_rules import PARAMETER_REQUIRED, PARAMETER_TYPE, type_in_words
 from grader.workspace.rules.renamed_nodes import key_of_program_name
 from grader.workspace.rules.rule_table import (
-    DEFINED,
-    FILTER_SIZE,
-    PARAMETER_FILE,
-    PARAMETER_KEY,
-    PARAMETER_NODE,
-    PARAMETER_REQUIRED,
-    PARAMETER_TYPE,
-    PLUGIN_NAME,
-    ROBOT_EXPANDED,
-    ROBOT_LINKS,
-    ROBOT_TEXT,
+    NO_PARAMETER,
+    SIMILAR,
+    Rule,
 )
 
 _OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
@@ -102,6 +95,34 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _plugins(workspace)
 
 
+_PARAMETER_FILE = Rule(
+    "parameter-file",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "An installed YAML file can be parsed, and a parameter file has no aliases.",
+    why=(
+        "A node that gets the file ends at its start with 'Couldn't parse params file'. A "
+        "launch file that reads it stops with a YAML error."
+    ),
+    wrong="""
+pilot:
+  ros__parameters:
+	speed: 2.0
+""",
+    right="""
+pilot:
+  ros__parameters:
+    speed: 2.0
+""",
+    frame="pilot.yaml",
+    beside={
+        "declare/pilot.py": "self.declare_parameter('speed', 1.0)",
+        "tune/rover.launch.py": "",
+    },
+)
+
+
 def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield installed YAML files that cannot be parsed, and aliases in parameter files.
 
@@ -119,7 +140,7 @@ def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
         is_of_opencv = not is_given and workspace.folder.begins_with(path, _OF_OPENCV)
         if not is_of_opencv and not workspace.folder.begins_with(path, LFS_POINTER):
             message = f"this is not YAML: {tree}"
-            yield Mismatch(PARAMETER_FILE, message, tree.location, is_certain=is_given)
+            yield Mismatch(_PARAMETER_FILE, message, tree.location, is_certain=is_given)
     for parameters in parameter_trees(workspace):
         alias = first_alias(parameters.source)
         if alias is not None:
@@ -127,7 +148,7 @@ def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
             message = (
                 f"ROS 2 reads no aliases in parameter files: write the value in place of *{name}"
             )
-            yield Mismatch(PARAMETER_FILE, message, at)
+            yield Mismatch(_PARAMETER_FILE, message, at)
 
 
 def parameter_trees(workspace: Workspace) -> Iterator[YamlNode]:
@@ -288,6 +309,34 @@ def _section_meant(
     return _MeantSection(unread[0], is_sure=False)
 
 
+_PARAMETER_NODE = Rule(
+    "parameter-node",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "A parameter file has a section for the node that gets it.",
+    why=(
+        "A node ignores sections with other names without a message. It starts with the "
+        "defaults of its code, as ros2 param dump shows."
+    ),
+    wrong="""
+pilott:
+  ros__parameters:
+    speed: 2.0
+""",
+    right="""
+pilot:
+  ros__parameters:
+    speed: 2.0
+""",
+    frame="pilot.yaml",
+    beside={
+        "declare/pilot.py": "self.declare_parameter('speed', 1.0)",
+        "tune/rover.launch.py": "",
+    },
+)
+
+
 def _section_of_other(
     key: str, at: Location, name: str, renamed: str | None, started_at: Location
 ) -> Mismatch:
@@ -296,7 +345,7 @@ def _section_of_other(
         f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
     )
     either = corrections(key, at, renamed, started_at)
-    return Mismatch(PARAMETER_NODE, message, at, started_at, corrections=either)
+    return Mismatch(_PARAMETER_NODE, message, at, started_at, corrections=either)
 
 
 def _is_renamed(workspace: Workspace, tree: YamlNode, node: StartedNode) -> bool:
@@ -350,6 +399,33 @@ def _unread_sections(
     return unread
 
 
+_PARAMETER_KEY = Rule(
+    "parameter-key",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "The parameters of a node are below one key ros__parameters.",
+    why=(
+        "rcl refuses the whole file with an error such as 'Cannot have a value before "
+        "ros__parameters'. The node ends at its start."
+    ),
+    wrong="""
+pilot:
+  speed: 2.0
+""",
+    right="""
+pilot:
+  ros__parameters:
+    speed: 2.0
+""",
+    frame="pilot.yaml",
+    beside={
+        "declare/pilot.py": "self.declare_parameter('speed', 1.0)",
+        "tune/rover.launch.py": "",
+    },
+)
+
+
 def _misplaced_keys(tree: YamlNode) -> Iterator[Mismatch]:
     """Yield values of a parameter file that are not below ros__parameters.
 
@@ -364,7 +440,7 @@ def _misplaced_keys(tree: YamlNode) -> Iterator[Mismatch]:
         if not isinstance(node.value, dict) or not node.value:
             if name and not is_below:
                 message = f"{name} is not below a key ros__parameters, so rcl cannot read the file"
-                yield Mismatch(PARAMETER_KEY, message, node.location)
+                yield Mismatch(_PARAMETER_KEY, message, node.location)
             continue
         for key, inner in node.value.items():
             mismatch = _misplaced_key(name, node, key, is_below=is_below)
@@ -378,13 +454,13 @@ def _misplaced_key(name: str, node: YamlNode, key: str, *, is_below: bool) -> Mi
     """Return what is wrong with a key of a mapping, which has a name."""
     if key == PARAMETERS and is_below:
         message = f"{name}: ros__parameters is inside of other ros__parameters"
-        return Mismatch(PARAMETER_KEY, message, node.key_location(key))
+        return Mismatch(_PARAMETER_KEY, message, node.key_location(key))
     inner = node.get(key)
     if not is_below and inner is not None and is_misspelt_key(key, inner):
         message = f"{name}: rcl does not know the key {key!r}; did you mean {PARAMETERS!r}?"
         at = node.key_location(key)
         either = corrections(key, at, PARAMETERS)
-        return Mismatch(PARAMETER_KEY, message, at, corrections=either)
+        return Mismatch(_PARAMETER_KEY, message, at, corrections=either)
     return None
 
 
@@ -585,6 +661,44 @@ def _other_type(
     yield Mismatch(PARAMETER_TYPE, message, given.location, at, is_certain, word=word)
 
 
+_FILTER_SIZE = Rule(
+    "filter-size",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "An input of a robot_localization filter has 15 values.",
+    why=(
+        "robot_localization reads each value by its position and does not check their number. A"
+        " missing value shifts the others or is read beyond the end."
+    ),
+    wrong="""
+ekf:
+  ros__parameters:
+    odom0: odom
+    odom0_config: [true, true, false, false, false, true,
+                   true, false, false, false, false, true, false, false]
+""",
+    right="""
+ekf:
+  ros__parameters:
+    odom0: odom
+    odom0_config: [true, true, false, false, false, true,
+                   true, false, false, false, false, true, false, false, false]
+""",
+    frame="ekf.yaml",
+    beside={
+        "rover.launch.py": """
+Node(
+    package='robot_localization',
+    executable='ekf_node',
+    name='ekf',
+    parameters=[os.path.join(share, 'config', 'ekf.yaml')],
+),
+""",
+    },
+)
+
+
 def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
     """Yield which values of an input a filter of robot_localization takes, if not 15."""
     for _, section in sections_in(tree) if isinstance(tree, YamlNode) else ():
@@ -595,7 +709,34 @@ def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
                     f"{value.keys[-1]} has {count} values; it needs 15: x y z, angles, their "
                     "rates and accelerations"
                 )
-                yield Mismatch(FILTER_SIZE, message, value.node.location)
+                yield Mismatch(_FILTER_SIZE, message, value.node.location)
+
+
+_ROBOT_TEXT = Rule(
+    "robot-text",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "robot_description is the text of a robot.",
+    why=(
+        "robot_state_publisher parses the path as XML and ends with 'Unable to initialize "
+        "urdf::model from robot description'."
+    ),
+    wrong="""
+Node(
+    package='robot_state_publisher',
+    executable='robot_state_publisher',
+    parameters=[{'robot_description': os.path.join(share, 'urdf', 'rover.urdf')}],
+),
+""",
+    right="""
+Node(
+    package='robot_state_publisher',
+    executable='robot_state_publisher',
+    parameters=[{'robot_description': robot}],
+),
+""",
+)
 
 
 def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
@@ -612,7 +753,45 @@ def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) ->
         if text and not text.startswith("<"):
             advice = "give it the content of the file, not the path"
             message = f"robot_description is no XML, so {node.executable} stops: {advice}"
-            yield Mismatch(ROBOT_TEXT, message, robot.location)
+            yield Mismatch(_ROBOT_TEXT, message, robot.location)
+
+
+_ROBOT_EXPANDED = Rule(
+    "robot-expanded",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "The text of a robot is what xacro makes of its file.",
+    why=(
+        "Parsers of URDF know no macros and no ${...}. robot_state_publisher stops, or it "
+        "publishes a robot without the links that macros add."
+    ),
+    wrong="""
+Node(
+    package='robot_state_publisher',
+    executable='robot_state_publisher',
+    parameters=[{
+        'robot_description': open(os.path.join(share, 'urdf', 'rover.urdf.xacro')).read(),
+    }],
+),
+""",
+    right="""
+Node(
+    package='robot_state_publisher',
+    executable='robot_state_publisher',
+    parameters=[{'robot_description': robot}],
+),
+""",
+    beside={
+        "arm/rover.urdf": "",
+        "rover.urdf.xacro": """
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="size" value="0.3"/>
+  <link name="base_link"/>
+</robot>
+""",
+    },
+)
 
 
 def _xacro_as_text(
@@ -634,7 +813,60 @@ def _xacro_as_text(
         f"robot_description is the text of {name}, which is xacro, and {node.executable} does not "
         "expand it: give it Command(['xacro ', path])"
     )
-    yield Mismatch(ROBOT_EXPANDED, message, robot.location, Location(path, 1, 1))
+    yield Mismatch(_ROBOT_EXPANDED, message, robot.location, Location(path, 1, 1))
+
+
+_ROBOT_LINKS = Rule(
+    "robot-links",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "The file of a robot that a launch file starts has links.",
+    why=(
+        "A robot without a link has no root, so the parser refuses it. robot_state_publisher "
+        "ends at its start, and nothing publishes the robot."
+    ),
+    wrong="""
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="body" params="size">
+    <link name="base_link"/>
+  </xacro:macro>
+</robot>
+""",
+    right="""
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="body" params="size">
+    <link name="base_link"/>
+  </xacro:macro>
+  <xacro:body size="0.3"/>
+</robot>
+""",
+    frame="rover.urdf.xacro",
+    beside={
+        "xacro/rover.launch.py": """
+import os
+
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+
+
+def generate_launch_description():
+    path = os.path.join(get_package_share_directory('rover'), 'urdf', 'rover.urdf.xacro')
+    robot = ParameterValue(Command(['xacro ', path]), value_type=str)
+    return LaunchDescription([
+        Node(
+            package='robot_state_publisher',
+            executable='robot_state_publisher',
+            parameters=[{'robot_description': robot}],
+        ),
+    ])
+""",
+    },
+    at="launch/rover.launch.py",
+)
 
 
 def _only_macros(workspace: Workspace, node: StartedNode, robot: ParameterValue) -> Iterator[Fact]:
@@ -656,7 +888,7 @@ def _only_macros(workspace: Workspace, node: StartedNode, robot: ParameterValue)
             f"{path.rpartition('/')[2]} only defines {named} and calls no macro, so the robot has "
             f"no link and {node.executable} stops: call the macro in the file"
         )
-        yield Mismatch(ROBOT_LINKS, message, robot.location, Location(path, 1, 1))
+        yield Mismatch(_ROBOT_LINKS, message, robot.location, Location(path, 1, 1))
 
 
 def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
@@ -677,7 +909,7 @@ def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode
             f"{RELEASES[RELEASES.index(having[-1]) + 1].title()} on, so it has no robot: give it "
             "the parameter robot_description, with the content of the file"
         )
-        yield Mismatch(ROBOT_TEXT, message, node.location)
+        yield Mismatch(_ROBOT_TEXT, message, node.location)
 
 
 def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Iterator[Fact]:
@@ -776,6 +1008,30 @@ def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:
             yield text, at
 
 
+_PLUGIN_NAME = Rule(
+    "plugin-name",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "The class of a plugin is one that exists.",
+    why=(
+        "pluginlib prints that the class does not exist, with the declared types. The node is "
+        "not configured, and the lifecycle manager aborts the start of Nav2."
+    ),
+    wrong="""
+plugins: [obstacle_layer]
+obstacle_layer:
+  plugin: nav2_costmap_2d/ObstacleLayer
+""",
+    right="""
+plugins: [obstacle_layer]
+obstacle_layer:
+  plugin: nav2_costmap_2d::ObstacleLayer
+""",
+    frame="costmap.yaml",
+)
+
+
 def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fact]:
     """Yield plugins that are written with other separators than pluginlib knows them by.
 
@@ -799,7 +1055,7 @@ def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fac
             continue
         message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
         at = value.node.location
-        yield Mismatch(PLUGIN_NAME, message, at, corrections=corrections(text, at, meant))
+        yield Mismatch(_PLUGIN_NAME, message, at, corrections=corrections(text, at, meant))
 
 
 def _plugins_of_two_releases(values: Sequence[YamlValue]) -> Iterator[Mismatch]:
@@ -821,7 +1077,7 @@ def _plugins_of_two_releases(values: Sequence[YamlValue]) -> Iterator[Mismatch]:
         f"{oldest.node.text!r} ({there.file_and_line}) until {RELEASES[of_oldest[-1]].title()}: "
         "no release has both"
     )
-    yield Mismatch(PLUGIN_NAME, message, newest.node.location, there)
+    yield Mismatch(_PLUGIN_NAME, message, newest.node.location, there)
 
 
 def _releases_of_plugins(names: Sequence[str], releases: Collection[Release]) -> Sequence[Release]:

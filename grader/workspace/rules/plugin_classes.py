@@ -13,9 +13,9 @@ from grader.workspace.model.text_files import MAX_YAML
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, corrections, warning
 from grader.workspace.rules.rule_table import (
-    PLUGIN_CLASS,
-    PLUGIN_EXPORTED,
-    PLUGIN_LIBRARY,
+    NO_CONTROLLER,
+    SIMILAR,
+    Rule,
 )
 
 _MADE = (".xml.in", ".xml.em")  # endings of files of which a build makes descriptions
@@ -87,6 +87,34 @@ def named_classes(workspace: Workspace) -> Iterator[_NamedClass]:
     yield from _hardware(workspace)
 
 
+_PLUGIN_CLASS = Rule(
+    "plugin-class",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "A package of the workspace describes the controller or hardware that a file names.",
+    why=(
+        "pluginlib finds classes by the names in description files. For another name it reports"
+        " that the class does not exist, and nothing is loaded."
+    ),
+    wrong="arm_controller: {type: rover/ArmControl}",
+    right="arm_controller: {type: rover/ArmController}",
+    frame="types/controllers.yaml",
+    beside={
+        "package.xml": "",
+        "arm.cpp": "",
+        "rover.launch.py": "",
+        "arm/CMakeLists.txt": """
+pluginlib_export_plugin_description_file(controller_interface plugins.xml)
+""",
+        "./plugins.xml": """
+<class name="rover/ArmController" type="rover::Arm"
+       base_class_type="controller_interface::ControllerInterface"/>
+""",
+    },
+)
+
+
 def _not_described(workspace: Workspace, described: Sequence[_DescribedClass]) -> Iterator[Fact]:
     """Yield the names of classes that their own package does not describe.
 
@@ -112,7 +140,7 @@ def _not_described(workspace: Workspace, described: Sequence[_DescribedClass]) -
         hint = f"did you mean {meant!r}?" if meant is not None else f"it has {', '.join(names)}"
         message = f"{wanted.user}: the package {prefix!r} describes no {wanted.name!r}; {hint}"
         either = corrections(wanted.name, wanted.location, meant)
-        yield Mismatch(PLUGIN_CLASS, message, wanted.location, corrections=either)
+        yield Mismatch(_PLUGIN_CLASS, message, wanted.location, corrections=either)
 
 
 def _controllers(workspace: Workspace) -> Iterator[_NamedClass]:
@@ -130,6 +158,33 @@ def _hardware(workspace: Workspace) -> Iterator[_NamedClass]:
                 yield _NamedClass(name, robot.place(plugin), _HARDWARE, "<plugin>")
 
 
+_PLUGIN_EXPORTED = Rule(
+    "plugin-exported",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "CMakeLists.txt exports the files that describe plugins.",
+    why=(
+        "pluginlib reads only description files that are registered in the ament index. It "
+        "reports an unknown class although the library is built and installed."
+    ),
+    wrong="# the build exports nothing",
+    right="pluginlib_export_plugin_description_file(controller_interface plugins.xml)",
+    frame="arm/CMakeLists.txt",
+    beside={
+        "package.xml": "",
+        "arm.cpp": "",
+        "rover.launch.py": "",
+        "./plugins.xml": """
+<class name="rover/ArmController" type="rover::Arm"
+       base_class_type="controller_interface::ControllerInterface"/>
+""",
+        "arm.yaml": "arm: 1",
+    },
+    at="plugins.xml",
+)
+
+
 def _not_exported(package: Package, source: Source) -> Iterator[Mismatch]:
     """Yield a file of classes that neither CMakeLists.txt nor package.xml exports."""
     setup = package.installation
@@ -144,7 +199,40 @@ def _not_exported(package: Package, source: Source) -> Iterator[Mismatch]:
             f"no pluginlib_export_plugin_description_file() names {name}, so pluginlib finds none "
             "of its classes"
         )
-        yield warning(PLUGIN_EXPORTED, message, Location(source.path, 1, 1))
+        yield warning(_PLUGIN_EXPORTED, message, Location(source.path, 1, 1))
+
+
+_PLUGIN_LIBRARY = Rule(
+    "plugin-library",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "A target makes the library of a file that describes plugins.",
+    why=(
+        "pluginlib knows the class, but finds no library to load it from. It raises a "
+        "LibraryLoadException, and the controller or hardware is not loaded."
+    ),
+    wrong="""
+<library path="arm_controls">
+  <class type="rover::Arm" base_class_type="controller_interface::ControllerInterface"/>
+</library>
+""",
+    right="""
+<library path="arm_control">
+  <class type="rover::Arm" base_class_type="controller_interface::ControllerInterface"/>
+</library>
+""",
+    frame="./descriptions.xml",
+    beside={
+        "package.xml": "",
+        "arm.cpp": "",
+        "rover.launch.py": "",
+        "arm/CMakeLists.txt": """
+pluginlib_export_plugin_description_file(controller_interface descriptions.xml)
+""",
+        "arm.yaml": "arm: 1",
+    },
+)
 
 
 def _other_libraries(package: Package, source: Source) -> Iterator[Mismatch]:
@@ -160,4 +248,4 @@ def _other_libraries(package: Package, source: Source) -> Iterator[Mismatch]:
         at = source.at(match.start(1))
         message = f"no target makes the library {path!r}; did you mean {meant!r}?"
         either = corrections(path, at, meant)
-        yield warning(PLUGIN_LIBRARY, message, at)._replace(corrections=either)
+        yield warning(_PLUGIN_LIBRARY, message, at)._replace(corrections=either)

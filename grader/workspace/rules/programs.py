@@ -38,15 +38,33 @@ from grader.workspace.rules.names import (
     warning,
 )
 from grader.workspace.rules.rule_table import (
-    ENTRY_MODULE,
-    ENTRY_POINT,
-    MODULE_INSTALLED,
-    PROGRAM_EXISTS,
-    PROGRAM_RUNS,
+    MAY_WAIT,
+    NO_PROGRAM,
+    NO_RUN,
+    SIMILAR,
+    Rule,
 )
 
 _MAX_FIRST_LINE = 100  # bytes
 _OF_MISSING = 5_000  # parts: similar names are searched among all programs
+
+
+_PROGRAM_EXISTS = Rule(
+    "program-exists",
+    "programs",
+    NO_PROGRAM,
+    SIMILAR,
+    "The package of a started node has its program.",
+    why=(
+        "ros2 launch prints that the executable is not found on the libexec directory, and "
+        "shuts down all nodes of the launch."
+    ),
+    wrong="Node(package='rover', executable='joystick_node'),",
+    right="Node(package='rover', executable='joystick'),",
+    beside={
+        "joystick.py": "",
+    },
+)
 
 
 def program_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -72,7 +90,7 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             workspace.charge(_OF_MISSING)
             missing = _missing_program(node.package, node.executable, programs)
             either = corrections(node.executable, node.location, missing.meant)
-            wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+            wrong = Mismatch(_PROGRAM_EXISTS, missing.message, node.location, corrections=either)
             yield wrong._replace(word=node.executable, names=(node.package,))
     yield from _lifecycle(workspace)
 
@@ -90,10 +108,29 @@ def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Ite
         missing = _why_no_program(owner, node.executable)
         start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
         either = corrections(node.executable, node.location, missing.meant, start)
-        wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+        wrong = Mismatch(_PROGRAM_EXISTS, missing.message, node.location, corrections=either)
         yield wrong._replace(word=node.executable, names=(node.package,))
     else:
         yield from _not_executed(owner, node.executable, node.location)
+
+
+_ENTRY_POINT = Rule(
+    "entry-point",
+    "programs",
+    NO_PROGRAM,
+    SIMILAR,
+    "An entry point names a function that exists.",
+    why=(
+        "colcon build succeeds, because it does not import the module. The program then ends at"
+        " its start with an ImportError or AttributeError."
+    ),
+    wrong="entry_points={'console_scripts': ['joystick = rover.joystick:run']},",
+    right="entry_points={'console_scripts': ['joystick = rover.joystick:main']},",
+    frame="setup.py",
+    beside={
+        "joystick.py": "",
+    },
+)
 
 
 def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
@@ -107,9 +144,28 @@ def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
         if fault is not None:
             message = f"the entry point of {entry.name!r} names no function: {fault.message}"
             either = corrections(fault.written, fault.location, fault.meant)
-            yield Mismatch(ENTRY_POINT, message, fault.location, corrections=either)
+            yield Mismatch(_ENTRY_POINT, message, fault.location, corrections=either)
     yield from _other_modules(package)
     yield from _modules_not_installed(workspace, package)
+
+
+_MODULE_INSTALLED = Rule(
+    "module-installed",
+    "code",
+    NO_RUN,
+    MAY_WAIT,
+    "A build installs the modules of the package that a node imports.",
+    why=(
+        "The program works in the source folder. After colcon build it ends at its start with a"
+        " ModuleNotFoundError."
+    ),
+    wrong="from rover.tools.gains import GAIN",
+    right="GAIN = 2.0",
+    frame="plain/pilot.py",
+    beside={
+        "rover/tools/gains.py": "GAIN = 2.0",
+    },
+)
 
 
 def _modules_not_installed(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
@@ -120,7 +176,7 @@ def _modules_not_installed(workspace: Workspace, package: Package) -> Iterator[M
             "in setup.py"
         )
         place = Location(package.path(SETUP), 1, 1)
-        yield Mismatch(MODULE_INSTALLED, message, missing.location, place, word=missing.module)
+        yield Mismatch(_MODULE_INSTALLED, message, missing.location, place, word=missing.module)
     setups = [other.installation for other in workspace.packages]
     for beside in modules_beside(package):
         if any(setup is not None and beside.module in setup.packages for setup in setups):
@@ -129,7 +185,31 @@ def _modules_not_installed(workspace: Workspace, package: Package) -> Iterator[M
             f"there is no module {beside.module} after a build, but {beside.package}."
             f"{beside.module}, so that this import fails: import it from {beside.package}"
         )
-        yield Mismatch(MODULE_INSTALLED, message, beside.location, word=beside.module)
+        yield Mismatch(_MODULE_INSTALLED, message, beside.location, word=beside.module)
+
+
+_ENTRY_MODULE = Rule(
+    "entry-module",
+    "programs",
+    NO_PROGRAM,
+    SIMILAR,
+    "An entry point runs the module of its own name, if that has such a function.",
+    why=(
+        "ros2 run starts the node of another module without an error. The node with the name of"
+        " the program never runs."
+    ),
+    wrong="""
+entry_points={'console_scripts': ['pilot=rover.joystick:main', 'joystick=rover.joystick:main']},
+""",
+    right="""
+entry_points={'console_scripts': ['pilot=rover.pilot:main', 'joystick=rover.joystick:main']},
+""",
+    frame="setup.py",
+    beside={
+        "joystick.py": "",
+        "start/pilot.py": "",
+    },
+)
 
 
 def _other_modules(package: Package) -> Iterator[Mismatch]:
@@ -154,7 +234,7 @@ def _other_modules(package: Package) -> Iterator[Mismatch]:
                 f"{own_module}, which has {entry.function}() too"
             )
             place = Location(package.path(path), 1, 1)
-            yield warning(ENTRY_MODULE, message, entry.location, place)
+            yield warning(_ENTRY_MODULE, message, entry.location, place)
 
 
 def _unstarted_scripts(
@@ -175,6 +255,36 @@ def _unstarted_scripts(
                 yield wrong._replace(is_certain=False)
 
 
+_PROGRAM_RUNS = Rule(
+    "program-runs",
+    "programs",
+    NO_PROGRAM,
+    SIMILAR,
+    "The first line of a script names an interpreter.",
+    why=(
+        "Linux does not execute the script: ros2 run and ros2 launch fail with 'Exec format "
+        "error', or because the interpreter does not exist."
+    ),
+    wrong="""
+import rclpy
+
+rclpy.init()
+""",
+    right="""
+#!/usr/bin/env python3
+import rclpy
+
+rclpy.init()
+""",
+    frame="scripts/drive.py",
+    beside={
+        "package.xml": "",
+        "CMakeLists.txt": "install(PROGRAMS scripts/drive.py DESTINATION lib/${PROJECT_NAME})",
+        "rover.launch.py": "Node(package='rover', executable='drive.py'),",
+    },
+)
+
+
 def _not_executed(package: Package, name: str, at: Location | None) -> Iterator[Mismatch]:
     """Yield that Linux cannot execute a script, which is started at a place.
 
@@ -192,7 +302,7 @@ def _not_executed(package: Package, name: str, at: Location | None) -> Iterator[
             else:
                 return
             message = f"Linux cannot execute {name}: its first line {wrong}"
-            yield Mismatch(PROGRAM_RUNS, message, Location(package.path(source), 1, 1), at)
+            yield Mismatch(_PROGRAM_RUNS, message, Location(package.path(source), 1, 1), at)
 
 
 class _MissingProgram(NamedTuple):

@@ -29,7 +29,13 @@ from grader.workspace.rules.names import (
     corrections,
     cost_of_guess,
 )
-from grader.workspace.rules.rule_table import PACKAGE_EXISTS, ROSDEP_KEY
+from grader.workspace.rules.rule_table import (
+    NO_KEY,
+    NO_PACKAGE,
+    NOWHERE,
+    UNKNOWN_KEY,
+    Rule,
+)
 from grader.workspace.rules.used_packages import calls_in, named_in_robots
 
 _DEPENDENCY = re.compile(r"<(?P<tag>\w*depend)(?P<attributes>\s[^<>]*)?>\s*(?P<name>[^<>\s]+)\s*</")
@@ -73,6 +79,22 @@ def _unknown_keys(workspace: Workspace, package: Package) -> Iterator[Fact]:
                 yield wrong
 
 
+_ROSDEP_KEY = Rule(
+    "rosdep-key",
+    "keys",
+    NO_KEY,
+    UNKNOWN_KEY,
+    "rosdep knows the dependencies in package.xml that the workspace does not have.",
+    why=(
+        "rosdep install stops with 'Cannot locate rosdep definition' and installs none of the "
+        "dependencies, which also stops a build in CI."
+    ),
+    wrong="<exec_depend>pyserial</exec_depend>",
+    right="<exec_depend>python3-serial</exec_depend>",
+    frame="python/package.xml",
+)
+
+
 def _wrong_key(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
     """Return what is wrong with a dependency that the workspace does not have."""
     if name in rosdep_keys() or workspace.texts.is_provided(name):
@@ -83,21 +105,21 @@ def _wrong_key(workspace: Workspace, name: str, at: Location) -> Mismatch | None
     words = rosdep_words()
     if name in words.elsewhere:
         message = f"{no_key}: delete the line; {words.elsewhere[name]}"
-        return Mismatch(ROSDEP_KEY, message, at, word=name)
+        return Mismatch(_ROSDEP_KEY, message, at, word=name)
     own_names = [package.name for package in workspace.packages]
     workspace.charge(cost_of_guess(len(own_names)))
     meant = words.instead.get(name) or near(name, own_names) or _near_key(workspace, name)
     if meant is not None:
         message = f"{no_key}, so rosdep install stops; did you mean {quoted(meant)}?"
         either = corrections(name, at, meant)
-        return Mismatch(ROSDEP_KEY, message, at, corrections=either, word=name)
+        return Mismatch(_ROSDEP_KEY, message, at, corrections=either, word=name)
     if _is_of_family(name, own_names):
         return None
     message = (
         f"{no_key}, and neither the workspace nor a release of ROS 2 ({released_date()}) has such "
         "a package: rosdep install stops, unless it is told to skip the name"
     )
-    return Mismatch(ROSDEP_KEY, message, at, is_certain=False, word=name)
+    return Mismatch(_ROSDEP_KEY, message, at, is_certain=False, word=name)
 
 
 def _is_of_family(name: str, others: Sequence[str]) -> bool:
@@ -124,7 +146,7 @@ def _of_other_release(workspace: Workspace, name: str, at: Location) -> Mismatch
         f"the package {quoted(name)} is released for {having}, and not for {wanted} "
         f"({released_date()}): rosdep install stops"
     )
-    return Mismatch(ROSDEP_KEY, message, at, is_certain=False, word=name)
+    return Mismatch(_ROSDEP_KEY, message, at, is_certain=False, word=name)
 
 
 def _near_key(workspace: Workspace, name: str) -> str | None:
@@ -215,6 +237,40 @@ def _may_exist(workspace: Workspace, package: Package, name: str, declared: set[
         return True
 
 
+_PACKAGE_EXISTS = Rule(
+    "package-exists",
+    "dependencies",
+    NO_PACKAGE,
+    NOWHERE,
+    "The packages that files name exist: in the workspace, or in a release of ROS 2.",
+    why=(
+        "Launch files and nodes stop with PackageNotFoundError when they ask for its share "
+        "folder, and find_package() stops a build."
+    ),
+    wrong="""
+Node(package='rviz2', executable='rviz2',
+     arguments=['-d', os.path.join(get_package_share_directory('my_robot_description'), 'a.rviz')]),
+""",
+    right="""
+Node(package='rviz2', executable='rviz2',
+     arguments=['-d', os.path.join(get_package_share_directory('rover'), 'rviz', 'rover.rviz')]),
+""",
+    beside={
+        "../cart_description/package.xml": """
+<package format="3">
+  <name>cart_description</name>
+  <version>1.0.0</version>
+  <description>A part of a rover.</description>
+  <maintainer email="a@example.com">A</maintainer>
+  <license>MIT</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+""",
+    },
+)
+
+
 def _absent(workspace: Workspace, named: _NamedPackage) -> Iterator[Mismatch]:
     """Yield that a package is not there, unless the rule of files says it."""
     name, at = named.name, named.location
@@ -227,7 +283,7 @@ def _absent(workspace: Workspace, named: _NamedPackage) -> Iterator[Mismatch]:
     if meant is not None:
         message = f"there is no package {quoted(name)}; did you mean {quoted(meant)}?"
         either = corrections(name, at, meant)
-        yield Mismatch(PACKAGE_EXISTS, message, at, corrections=either, word=name)
+        yield Mismatch(_PACKAGE_EXISTS, message, at, corrections=either, word=name)
         return
     message = (
         f"neither the workspace nor a release of ROS 2 ({released_date()}) has the package "
@@ -237,7 +293,7 @@ def _absent(workspace: Workspace, named: _NamedPackage) -> Iterator[Mismatch]:
     if released is not None:
         message += f"; did you mean {quoted(released)}?"
     either = corrections(name, at, released)
-    yield Mismatch(PACKAGE_EXISTS, message, at, None, False, either, word=name)
+    yield Mismatch(_PACKAGE_EXISTS, message, at, None, False, either, word=name)
 
 
 def _package_meant(name: str, names: Sequence[str]) -> str | None:

@@ -13,13 +13,34 @@ from grader.workspace.graph.transform_edges import Edge, is_zero_rotation
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    STATIC_POSE,
-    TRANSFORM_CYCLE,
-    TRANSFORM_OWNER,
-    TRANSFORM_ROTATION,
+    OTHER_TRANSFORM,
+    OTHER_VALUE,
+    WRONG_TRANSFORM,
+    Rule,
 )
 
 _SAME_PLACE, _SAME_ANGLE = 1e-3, 0.1  # metres, degrees
+
+
+_TRANSFORM_ROTATION = Rule(
+    "transform-rotation",
+    "transforms",
+    WRONG_TRANSFORM,
+    OTHER_TRANSFORM,
+    "The quaternion of a static transform is a rotation.",
+    why=(
+        "tf2 ignores the static transform and prints TF_DENORMALIZED_QUATERNION. The frame is "
+        "missing, and each lookup of it fails."
+    ),
+    wrong="""
+Node(package='tf2_ros', executable='static_transform_publisher',
+     arguments=['0', '0', '0', '0', '0', '0', '0', 'base_link', 'camera']),
+""",
+    right="""
+Node(package='tf2_ros', executable='static_transform_publisher',
+     arguments=['0', '0', '0', '0', '0', '0', '1', 'base_link', 'camera']),
+""",
+)
 
 
 def transform_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -30,7 +51,7 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
                 "the quaternion of a static_transform_publisher is 0 0 0 0, which is no "
                 "rotation: tf2 ignores the transform; without one it is 0 0 0 1"
             )
-            yield Mismatch(TRANSFORM_ROTATION, message, node.location)
+            yield Mismatch(_TRANSFORM_ROTATION, message, node.location)
     has_robots = len(workspace.robots.known) > 1  # of which one may run in Gazebo
     certain = [edge for edge in graph_of(workspace).edges if edge.is_certain]
     for of_launch in grouped(certain, lambda edge: edge.launch).values():
@@ -46,6 +67,30 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _owned_twice(edges)
         yield from _children_of_robot(edges, joints)
         yield from _cycles([*edges, *joints.values()])
+
+
+_TRANSFORM_OWNER = Rule(
+    "transform-owner",
+    "transforms",
+    WRONG_TRANSFORM,
+    OTHER_TRANSFORM,
+    "One program publishes the transform of a frame.",
+    why=(
+        "The frame jumps between two poses as each program publishes. The robot flickers in "
+        "RViz, and localization and navigation get worse."
+    ),
+    wrong="""
+Node(package='robot_localization', executable='ekf_node', name='wheels'),
+Node(package='robot_localization', executable='ekf_node', name='imu'),
+""",
+    right="""
+Node(package='robot_localization', executable='ekf_node', name='wheels'),
+Node(
+    package='robot_localization', executable='ekf_node', name='imu',
+    parameters=[{'publish_tf': False}],
+),
+""",
+)
 
 
 def _owned_twice(edges: Sequence[Edge]) -> Iterator[Mismatch]:
@@ -66,7 +111,7 @@ def _owned_twice(edges: Sequence[Edge]) -> Iterator[Mismatch]:
                 f"{before.by} in {quoted(before.parent)} ({before.location.file_and_line}): a "
                 "frame has one parent"
             )
-        yield warning(TRANSFORM_OWNER, message, edge.location, before.location)
+        yield warning(_TRANSFORM_OWNER, message, edge.location, before.location)
 
 
 def _children_of_robot(edges: Sequence[Edge], joints: Mapping[str, Edge]) -> Iterator[Mismatch]:
@@ -82,7 +127,35 @@ def _children_of_robot(edges: Sequence[Edge], joints: Mapping[str, Edge]) -> Ite
             f"{edge.by} publishes {quoted(edge.child)} in {quoted(edge.parent)}, but {joint.by} "
             f"places it in {quoted(joint.parent)}: a frame has one parent"
         )
-        yield Mismatch(TRANSFORM_OWNER, message, edge.location, joint.location)
+        yield Mismatch(_TRANSFORM_OWNER, message, edge.location, joint.location)
+
+
+_STATIC_POSE = Rule(
+    "static-pose",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "A static transform of a link equals its fixed joint.",
+    why=(
+        "Two programs publish different poses of one link. Which one counts depends on the "
+        "order of their start, so sensor data are sometimes displaced."
+    ),
+    wrong="""
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot}]),
+Node(package='tf2_ros', executable='static_transform_publisher',
+     arguments=['--z', '0.2', '--frame-id', 'base_link', '--child-frame-id', 'lidar']),
+""",
+    right="""
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot}]),
+Node(package='tf2_ros', executable='static_transform_publisher',
+     arguments=['--z', '0.1', '--frame-id', 'base_link', '--child-frame-id', 'lidar']),
+""",
+    beside={
+        "lidar/rover.urdf": "",
+    },
+)
 
 
 def _elsewhere(edge: Edge, joint: Edge) -> Iterator[Mismatch]:
@@ -97,7 +170,32 @@ def _elsewhere(edge: Edge, joint: Edge) -> Iterator[Mismatch]:
         f"{edge.by} places {quoted(edge.child)} {1000.0 * away:.3g} mm and {turn:.3g} degrees from "
         f"where {joint.by} places it"
     )
-    yield warning(STATIC_POSE, message, edge.location, joint.location)
+    yield warning(_STATIC_POSE, message, edge.location, joint.location)
+
+
+_TRANSFORM_CYCLE = Rule(
+    "transform-cycle",
+    "transforms",
+    WRONG_TRANSFORM,
+    OTHER_TRANSFORM,
+    "The transforms of a robot have no cycle.",
+    why=(
+        "tf2 cannot resolve frames in a loop: lookups fail with 'The tf tree is invalid because"
+        " it contains a loop'."
+    ),
+    wrong="""
+Node(package='tf2_ros', executable='static_transform_publisher',
+     arguments=['--frame-id', 'base_link', '--child-frame-id', 'camera']),
+Node(package='tf2_ros', executable='static_transform_publisher',
+     arguments=['--frame-id', 'camera', '--child-frame-id', 'base_link']),
+""",
+    right="""
+Node(package='tf2_ros', executable='static_transform_publisher',
+     arguments=['--frame-id', 'base_link', '--child-frame-id', 'camera']),
+Node(package='tf2_ros', executable='static_transform_publisher',
+     arguments=['--frame-id', 'camera', '--child-frame-id', 'camera_optical']),
+""",
+)
 
 
 def _cycles(edges: Sequence[Edge]) -> Iterator[Mismatch]:
@@ -116,4 +214,4 @@ def _cycles(edges: Sequence[Edge]) -> Iterator[Mismatch]:
             names = " -> ".join(map(quoted, [*reversed(cycle), cycle[-1]]))
             message = f"the frames {names} are a cycle: tf2 has no transform of them"
             at = min((above[name] for name in cycle), key=lambda edge: edge.source == "robot")
-            yield Mismatch(TRANSFORM_CYCLE, message, at.location)
+            yield Mismatch(_TRANSFORM_CYCLE, message, at.location)

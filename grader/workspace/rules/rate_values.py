@@ -21,9 +21,8 @@ from grader.workspace.model.launches import MANAGER
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    OBSTACLE_RANGE,
-    PUBLISH_RATE,
-    SCAN_RATE,
+    OTHER_VALUE,
+    Rule,
 )
 
 _LIDARS = ("lidar", "gpu_lidar", "ray", "gpu_ray")
@@ -59,6 +58,33 @@ def _largest(numbers: Iterable[_StatedNumber]) -> _StatedNumber | None:
     return max(numbers, key=lambda stated: stated.value, default=None)
 
 
+_OBSTACLE_RANGE = Rule(
+    "obstacle-range",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "A costmap asks for no obstacles beyond the range of its lidar.",
+    why=(
+        "The lidar does not measure that far. The costmap marks obstacles later than the value "
+        "says, so Nav2 avoids them later."
+    ),
+    wrong="""
+obstacle_layer:
+  observation_sources: scan
+  scan: {data_type: LaserScan, obstacle_max_range: 12.0}
+""",
+    right="""
+obstacle_layer:
+  observation_sources: scan
+  scan: {data_type: LaserScan, obstacle_max_range: 6.0}
+""",
+    frame="costmap.yaml",
+    beside={
+        "lidar/rover.urdf": "",
+    },
+)
+
+
 def _too_far(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mismatch]:
     """Yield that a costmap marks obstacles farther away than any lidar measures."""
     if asked is not None and asked.value > lidar.value + _ROUNDING:
@@ -66,7 +92,34 @@ def _too_far(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mism
             f"{asked.of}.obstacle_max_range is {asked.value:g} m; the lidar {quoted(lidar.of)} "
             f"measures up to {lidar.value:g} m"
         )
-        yield warning(OBSTACLE_RANGE, message, asked.location, lidar.location)
+        yield warning(_OBSTACLE_RANGE, message, asked.location, lidar.location)
+
+
+_SCAN_RATE = Rule(
+    "scan-rate",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "A costmap expects scans no more often than its lidar measures.",
+    why=(
+        "The costmap warns that its observation buffer has not been updated and takes its data "
+        "for outdated. Nav2 then waits or stops the robot."
+    ),
+    wrong="""
+obstacle_layer:
+  observation_sources: scan
+  scan: {data_type: LaserScan, expected_update_rate: 0.1}
+""",
+    right="""
+obstacle_layer:
+  observation_sources: scan
+  scan: {data_type: LaserScan, expected_update_rate: 0.5}
+""",
+    frame="costmap.yaml",
+    beside={
+        "lidar/rover.urdf": "",
+    },
+)
 
 
 def _too_often(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mismatch]:
@@ -77,7 +130,37 @@ def _too_often(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mi
             f"{asked.of}.expected_update_rate is {asked.value:g} s; the lidar {quoted(lidar.of)} "
             f"measures every {period:.4g} s"
         )
-        yield warning(SCAN_RATE, message, asked.location, lidar.location)
+        yield warning(_SCAN_RATE, message, asked.location, lidar.location)
+
+
+_PUBLISH_RATE = Rule(
+    "publish-rate",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "A controller publishes no more often than it is updated.",
+    why=(
+        "A controller publishes in its update(), so odometry and transforms arrive only at the "
+        "rate of the manager. Localization may wait for them."
+    ),
+    wrong="""
+controller_manager:
+  ros__parameters:
+    update_rate: 10
+    drive_controller: {type: diff_drive_controller/DiffDriveController}
+drive_controller:
+  ros__parameters: {publish_rate: 50.0}
+""",
+    right="""
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    drive_controller: {type: diff_drive_controller/DiffDriveController}
+drive_controller:
+  ros__parameters: {publish_rate: 50.0}
+""",
+    frame="controllers.yaml",
+)
 
 
 def _rates_of_controllers(workspace: Workspace) -> Iterator[Fact]:
@@ -96,7 +179,7 @@ def _rates_of_controllers(workspace: Workspace) -> Iterator[Fact]:
                 f"{asked.of}.publish_rate is {asked.value:g} Hz; the controller manager updates "
                 f"its controllers {update.value:g} times a second"
             )
-            yield warning(PUBLISH_RATE, message, asked.location, update.location)
+            yield warning(_PUBLISH_RATE, message, asked.location, update.location)
 
 
 def _number_in(section: YamlNode | None, name: str, key: str) -> _StatedNumber | None:

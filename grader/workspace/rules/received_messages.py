@@ -16,9 +16,8 @@ from grader.workspace.graph.graph import graph_of, grouped
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    IMAGE_ENCODING,
-    MESSAGE_DEPTH,
-    MESSAGE_HEADER,
+    NO_MESSAGE,
+    Rule,
 )
 
 _HEADER = "header"
@@ -41,6 +40,28 @@ def received_message_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _other_encodings(workspace)
 
 
+_MESSAGE_HEADER = Rule(
+    "message-header",
+    "messages",
+    NO_MESSAGE,
+    NO_MESSAGE,
+    "The messages of a filter or synchroniser have a header.",
+    why=(
+        "A synchroniser in Python drops messages without a header. One in C++ takes their time "
+        "as 0, so the callback is never called or the node stops."
+    ),
+    wrong="""
+filters = [Subscriber(self, TwistStamped, 'speed'), Subscriber(self, Twist, 'cmd_vel')]
+self.pairs = ApproximateTimeSynchronizer(filters, 10, 0.1)
+""",
+    right="""
+filters = [Subscriber(self, TwistStamped, 'speed'), Subscriber(self, TwistStamped, 'cmd_vel')]
+self.pairs = ApproximateTimeSynchronizer(filters, 10, 0.1)
+""",
+    frame="start/pilot.py",
+)
+
+
 def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
     """Yield the messages that a synchroniser drops, or stops at, since they have no header."""
     for each in workspace.code.by_package[package].synchronised:
@@ -54,7 +75,7 @@ def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
             each.by, "uses time 0 instead, so it stops or never matches the messages"
         )
         message = f"{each.type} has no header with a time: {each.by} {effect}"
-        yield warning(MESSAGE_HEADER, message, each.location)
+        yield warning(_MESSAGE_HEADER, message, each.location)
 
 
 def _has_header(workspace: Workspace, name: str) -> bool | None:
@@ -71,6 +92,22 @@ def _has_header(workspace: Workspace, name: str) -> bool | None:
     return _HEADER in interface.sections[0].fields
 
 
+_MESSAGE_DEPTH = Rule(
+    "message-depth",
+    "messages",
+    NO_MESSAGE,
+    NO_MESSAGE,
+    "A publisher or subscription keeps messages.",
+    why=(
+        "ROS 2 replaces a depth of 0 with the default of the middleware, mostly 1. Of several "
+        "messages in a short time only the last one is kept."
+    ),
+    wrong="self.speeds = self.create_publisher(Float64, 'speed', 0)",
+    right="self.speeds = self.create_publisher(Float64, 'speed', 10)",
+    frame="start/pilot.py",
+)
+
+
 def _without_queue(workspace: Workspace, package: str) -> Iterator[Mismatch]:
     """Yield publishers and subscriptions whose queue has no length."""
     for node in workspace.code.by_package[package].nodes:
@@ -80,7 +117,7 @@ def _without_queue(workspace: Workspace, package: str) -> Iterator[Mismatch]:
                     f"the {endpoint.kind} keeps 0 messages, which ROS 2 reads as the default of "
                     "the middleware, mostly 1: write how many"
                 )
-                yield warning(MESSAGE_DEPTH, message, endpoint.location)
+                yield warning(_MESSAGE_DEPTH, message, endpoint.location)
 
 
 def _other_encodings(workspace: Workspace) -> Iterator[Fact]:
@@ -116,13 +153,29 @@ def _not_converted(
             yield _cannot_convert(topic, made[0], encoding)
 
 
+_IMAGE_ENCODING = Rule(
+    "image-encoding",
+    "messages",
+    NO_MESSAGE,
+    NO_MESSAGE,
+    "cv_bridge converts the images of a topic to the asked encoding.",
+    why=(
+        "cv_bridge raises an exception because it cannot convert between the encodings. The "
+        "node stops at its first image."
+    ),
+    wrong="image = self.bridge.imgmsg_to_cv2(message, 'bgr8')",
+    right="image = self.bridge.imgmsg_to_cv2(message, '16UC1')",
+    frame="depth/pilot.py",
+)
+
+
 def _cannot_convert(topic: str, made: ImageEncoding, asked: ImageEncoding) -> Mismatch:
     at = made.location
     message = (
         f"the images of {topic} have the encoding {quoted(made.name)} ({at.file_and_line}), which "
         f"cv_bridge does not convert to {quoted(asked.name)}"
     )
-    return warning(IMAGE_ENCODING, message, asked.location, at)
+    return warning(_IMAGE_ENCODING, message, asked.location, at)
 
 
 def _is_lost(made: str, asked: str) -> bool:

@@ -18,11 +18,35 @@ from grader.workspace.model.workspace_folder import TOO_MUCH
 from grader.workspace.rules.name_problems import name_problems
 from grader.workspace.rules.names import Agreement
 from grader.workspace.rules.reading import read_agreement
-from grader.workspace.rules.rule_table import NAME_RELEASE, NAMES_COMPARED
+from grader.workspace.rules.rule_table import (
+    OTHER_RELEASE,
+    UNCOMPARED,
+    Rule,
+)
 
 _DEPENDENCY = re.compile(r"<\w*depend>\s*([\w-]+)\s*</")
 _CPP = (".cpp", ".cc", ".cxx", ".hpp", ".h")
 _PLUGIN_KEYS = ("plugin", "robot_model_type")
+
+
+_NAMES_COMPARED = Rule(
+    "names-compared",
+    "files",
+    UNCOMPARED,
+    UNCOMPARED,
+    "All names of a workspace are compared.",
+    why=(
+        "Mistakes in the remaining names appear only when the workspace runs. A rubric leaves "
+        "these names to manual grading."
+    ),
+    wrong="""
+*[Node(package='arm', executable='driver', name='driver_%d' % i) for i in range(2000)],
+""",
+    right="""
+*[Node(package='arm', executable='driver', name='driver_%d' % i) for i in range(5)],
+""",
+    at="launch/rover.launch.py",
+)
 
 
 def compared_names(workspace: Workspace) -> Iterator[Problem]:
@@ -35,7 +59,31 @@ def compared_names(workspace: Workspace) -> Iterator[Problem]:
         assert workspace.folder.is_spent
     if workspace.folder.is_spent:
         start = Location(next(iter(workspace.tree.files), ""), 1, 1)
-        yield NAMES_COMPARED.problem(f"not all names are compared: {TOO_MUCH}", start)
+        yield _NAMES_COMPARED.problem(f"not all names are compared: {TOO_MUCH}", start)
+
+
+_NAME_RELEASE = Rule(
+    "name-release",
+    "words",
+    OTHER_RELEASE,
+    OTHER_RELEASE,
+    "Packages, programs, controllers, plugins and topics are of the stated release.",
+    why=(
+        "The installed packages do not have the name: ros2 launch or pluginlib reports that it "
+        "is not found, or messages go to a topic without a reader."
+    ),
+    wrong="""
+planner_plugins: [GridBased]
+GridBased:
+  plugin: nav2_navfn_planner/NavfnPlanner
+""",
+    right="""
+planner_plugins: [GridBased]
+GridBased:
+  plugin: nav2_navfn_planner::NavfnPlanner
+""",
+    frame="costmap.yaml",
+)
 
 
 def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Problem]:
@@ -57,7 +105,7 @@ def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Proble
             releases = {*workspace.releases, *releases_in_path(at.path)}
             other = other_name(kind, name, releases, shown=owner)
             if other is not None:
-                problem = NAME_RELEASE.problem(other.message, at, kind)
+                problem = _NAME_RELEASE.problem(other.message, at, kind)
                 problems.setdefault((other.message, at.path), problem)
     return sorted(
         problems.values(),

@@ -15,7 +15,9 @@ from grader.ros.launch.node_parameters import is_key_of
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, corrections
 from grader.workspace.rules.rule_table import (
-    NODE_SECTION,
+    NO_PARAMETER,
+    SIMILAR,
+    Rule,
 )
 
 _ANY_NAMES = ("*", "**")
@@ -85,6 +87,41 @@ def _unread_sections(
         yield _unread_section(node, key, at, is_only=len(unread) == 1, is_read=is_read_elsewhere)
 
 
+_NODE_SECTION = Rule(
+    "node-section",
+    "parameters",
+    NO_PARAMETER,
+    SIMILAR,
+    "The section of a node has the name that its launch file gives it.",
+    why=(
+        "The name in the launch file replaces the name in the code. The node ignores the "
+        "section with its old name without a message, so its defaults count."
+    ),
+    wrong="""
+joystick:
+  ros__parameters:
+    speed: 2.0
+""",
+    right="""
+left_stick:
+  ros__parameters:
+    speed: 2.0
+""",
+    frame="joystick.yaml",
+    beside={
+        "joystick.py": "",
+        "rover.launch.py": """
+Node(
+    package='rover',
+    executable='joystick',
+    name='left_stick',
+    parameters=[os.path.join(share, 'config', 'joystick.yaml')],
+),
+""",
+    },
+)
+
+
 def _unread_section(
     node: StartedNode, key: str, at: Location, *, is_only: bool, is_read: bool
 ) -> Mismatch:
@@ -96,7 +133,7 @@ def _unread_section(
         f"its name in its program: {advice} {quoted(name)}"
     )
     either = corrections(old, at, name if is_only and not is_read else None)
-    return Mismatch(NODE_SECTION, message, at, node.location, node.when is True, either)
+    return Mismatch(_NODE_SECTION, message, at, node.location, node.when is True, either)
 
 
 def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str | None]:

@@ -5,7 +5,44 @@ from collections.abc import Iterator
 from grader.ros.xml.parsing import Element
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, warning
-from grader.workspace.rules.rule_table import INTERFACE_ONCE
+from grader.workspace.rules.rule_table import (
+    NO_CONTROLLER,
+    SIMILAR,
+    Rule,
+)
+
+_INTERFACE_ONCE = Rule(
+    "interface-once",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "A robot has each command interface in one <ros2_control> only.",
+    why=(
+        "Newer releases of ros2_control refuse the whole robot. Older ones use only the first "
+        "system, so commands never reach the hardware of the second."
+    ),
+    wrong="""
+<link name="a"/>
+<joint name="first" type="continuous"><parent link="base_link"/><child link="a"/></joint>
+<ros2_control name="arm" type="system">
+  <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+  <joint name="first"><command_interface name="position"/></joint>
+</ros2_control>
+<ros2_control name="simulated_arm" type="system">
+  <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+  <joint name="first"><command_interface name="position"/></joint>
+</ros2_control>
+""",
+    right="""
+<link name="a"/>
+<joint name="first" type="continuous"><parent link="base_link"/><child link="a"/></joint>
+<ros2_control name="arm" type="system">
+  <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+  <joint name="first"><command_interface name="position"/></joint>
+</ros2_control>
+""",
+    frame="rover.urdf",
+)
 
 
 def repeated_interface_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -31,4 +68,4 @@ def repeated_interface_facts(workspace: Workspace) -> Iterator[Fact]:
                     "each once"
                 )
                 at, other = robot.place(system), robot.place(first)
-                yield warning(INTERFACE_ONCE, message, at, other)
+                yield warning(_INTERFACE_ONCE, message, at, other)

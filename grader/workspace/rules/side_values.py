@@ -9,8 +9,11 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch, warning
-from grader.workspace.rules.rule_table import LINK_SIDE, WHEEL_SIDE
-from grader.workspace.rules.wheel_values import wheel_value_facts
+from grader.workspace.rules.rule_table import (
+    OTHER_VALUE,
+    Rule,
+)
+from grader.workspace.rules.wheel_values import WHEEL_SIDE, wheel_value_facts
 
 _ROLLING = ("wheel", "module", "caster", "track")  # words in names of links that drive
 _LEAST = 0.01  # metres between left and right
@@ -60,6 +63,38 @@ def _side(configuration: Configuration, left: str, right: str, frame: str | None
     return "right" if y_left > _LEAST or y_right < -_LEAST else "none"
 
 
+_LINK_SIDE = Rule(
+    "link-side",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "Links that are called left are on the left of those called right.",
+    why=(
+        "Controllers and code choose links by their names. A robot with such wheels turns the "
+        "other way, and data of a left sensor come from the right."
+    ),
+    wrong="""
+<link name="left_wheel"/> <link name="right_wheel"/>
+<joint name="left" type="continuous">
+  <parent link="base_link"/><child link="left_wheel"/><origin xyz="0 -0.2 0"/><axis xyz="0 1 0"/>
+</joint>
+<joint name="right" type="continuous">
+  <parent link="base_link"/><child link="right_wheel"/><origin xyz="0 0.2 0"/><axis xyz="0 1 0"/>
+</joint>
+""",
+    right="""
+<link name="left_wheel"/> <link name="right_wheel"/>
+<joint name="left" type="continuous">
+  <parent link="base_link"/><child link="left_wheel"/><origin xyz="0 0.2 0"/><axis xyz="0 1 0"/>
+</joint>
+<joint name="right" type="continuous">
+  <parent link="base_link"/><child link="right_wheel"/><origin xyz="0 -0.2 0"/><axis xyz="0 1 0"/>
+</joint>
+""",
+    frame="rover.urdf",
+)
+
+
 def _exchanged(robot: KnownRobot, pairs: list[tuple[str, str]]) -> Iterator[Mismatch]:
     """Yield that all pairs are on the other sides."""
     configuration = Configuration(robot.robot)
@@ -83,4 +118,4 @@ def _exchanged(robot: KnownRobot, pairs: list[tuple[str, str]]) -> Iterator[Mism
         names = enumerated([quoted(name) for name in wrong])
         verb = "is" if len(wrong) == 1 else "are"
         message = f"{names} {verb} on the right of the robot, where y is negative (REP 103)"
-        yield warning(LINK_SIDE, message, at.resolve())
+        yield warning(_LINK_SIDE, message, at.resolve())

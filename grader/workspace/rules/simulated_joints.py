@@ -13,10 +13,59 @@ from grader.workspace.model.launches import SPAWNERS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.companions import may_publish_joint_states
 from grader.workspace.rules.names import Compared, Fact, warning
-from grader.workspace.rules.rule_table import SIMULATED_JOINTS
+from grader.workspace.rules.rule_table import (
+    NO_COMPANION,
+    Rule,
+)
 
 _STATES = "sensor_msgs.msg.JointState"
 _SIMULATION = "ros_gz_sim"
+
+
+_SIMULATED_JOINTS = Rule(
+    "simulated-joints",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "Something publishes the positions of the joints of a robot in Gazebo.",
+    why=(
+        "Wheels turn in Gazebo, but robot_state_publisher gets no positions. RViz reports that "
+        "their links have no transform."
+    ),
+    wrong="""
+IncludeLaunchDescription(os.path.join(gazebo, 'launch', 'gz_sim.launch.py')),
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot, 'use_sim_time': True}]),
+Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'robot_description']),
+Node(package='ros_gz_bridge', executable='parameter_bridge',
+     arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock']),
+""",
+    right="""
+IncludeLaunchDescription(os.path.join(gazebo, 'launch', 'gz_sim.launch.py')),
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot, 'use_sim_time': True}]),
+Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'robot_description']),
+Node(package='ros_gz_bridge', executable='parameter_bridge',
+     arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock',
+                '/joint_states@sensor_msgs/msg/JointState[gz.msgs.Model']),
+""",
+    beside={
+        "rover.urdf": """
+<link name="left_wheel"/>
+<joint name="left" type="continuous"><parent link="base_link"/><child link="left_wheel"/></joint>
+""",
+        "show.launch.py": """
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package='joint_state_publisher', executable='joint_state_publisher'),
+    ])
+""",
+    },
+)
 
 
 def simulated_joint_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -46,7 +95,7 @@ def simulated_joint_facts(workspace: Workspace) -> Iterator[Fact]:
                 "transform: bridge the topic of a JointStatePublisher, or start a "
                 "joint_state_broadcaster"
             )
-            yield warning(SIMULATED_JOINTS, message, publishers[0].location)
+            yield warning(_SIMULATED_JOINTS, message, publishers[0].location)
 
 
 def _creates_robot(launch: Launch) -> bool:

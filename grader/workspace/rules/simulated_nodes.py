@@ -11,7 +11,10 @@ from grader.workspace.graph.graph import graph_of
 from grader.workspace.model.own_code import CPP_ENDINGS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, warning
-from grader.workspace.rules.rule_table import SIMULATED_NODE
+from grader.workspace.rules.rule_table import (
+    OTHER_TIME,
+    Rule,
+)
 
 _TIME = "use_sim_time"
 _SIMULATIONS = ("ros_gz_sim", "ros_ign_gazebo", "gazebo_ros")
@@ -21,6 +24,29 @@ _WITH_TIME = (
     "robot_state_publisher",
     "joint_state_publisher",
     "joint_state_publisher_gui",
+)
+
+
+_SIMULATED_NODE = Rule(
+    "simulated-node",
+    "wiring",
+    OTHER_TIME,
+    OTHER_TIME,
+    "The nodes that a launch file starts beside Gazebo use its time.",
+    why=(
+        "What the node publishes has the time of the machine. RViz, tf2 and filters beside "
+        "Gazebo may drop it as too far from their own time."
+    ),
+    wrong="""
+IncludeLaunchDescription(os.path.join(gazebo, 'launch', 'gz_sim.launch.py')),
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot}]),
+""",
+    right="""
+IncludeLaunchDescription(os.path.join(gazebo, 'launch', 'gz_sim.launch.py')),
+Node(package='robot_state_publisher', executable='robot_state_publisher',
+     parameters=[{'robot_description': robot, 'use_sim_time': True}]),
+""",
 )
 
 
@@ -55,7 +81,7 @@ def simulated_node_facts(workspace: Workspace) -> Iterator[Fact]:
             )
             if "SetUseSimTime" in launch.source.text:
                 message += "; SetUseSimTime sets only the clock of launch itself"
-            yield warning(SIMULATED_NODE, message, late[0].location)
+            yield warning(_SIMULATED_NODE, message, late[0].location)
 
 
 def _starts_simulation(launch: Launch) -> bool:

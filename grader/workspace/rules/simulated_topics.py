@@ -16,7 +16,11 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.bridges import has_unread_topics
 from grader.workspace.rules.frames import openings
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
-from grader.workspace.rules.rule_table import BRIDGE_SYSTEM, ODOMETRY_BRIDGED
+from grader.workspace.rules.rule_table import (
+    NO_TOPIC,
+    SIMILAR,
+    Rule,
+)
 
 _TRANSFORMS = "tf2_msgs.msg.TFMessage"
 # Programs of ros_gz that publish no transform but those of rows.
@@ -62,6 +66,38 @@ def _needs() -> Mapping[str, _Need]:
     }
 
 
+_BRIDGE_SYSTEM = Rule(
+    "bridge-system",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "The robot has a system for the commands, joints and odometry of a bridge.",
+    why=(
+        "Nothing in Gazebo reads the commands or publishes the messages. The topics exist in "
+        "ROS 2, but the robot does not move or no data arrive."
+    ),
+    wrong="<!-- without a plugin -->",
+    right="""
+<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+  <topic>cmd_vel</topic><frame_id>odom</frame_id><child_frame_id>base_link</child_frame_id>
+</plugin></gazebo>
+""",
+    frame="rover.urdf",
+    beside={
+        "rover.launch.py": """
+Node(
+    package='robot_state_publisher', executable='robot_state_publisher',
+    parameters=[{'robot_description': robot}],
+),
+Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'robot_description']),
+Node(package='ros_gz_bridge', executable='parameter_bridge',
+     arguments=['/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist']),
+""",
+    },
+    at="launch/rover.launch.py",
+)
+
+
 def _without_system(
     rows: Collection[BridgeRow], systems: Mapping[str, Location]
 ) -> Iterator[Mismatch]:
@@ -77,7 +113,36 @@ def _without_system(
                 f"no system of Gazebo {need.what}, so this row of {quoted(row.gz)} brings "
                 "nothing: the robot needs a <plugin> for it"
             )
-            yield warning(BRIDGE_SYSTEM, message, row.location)
+            yield warning(_BRIDGE_SYSTEM, message, row.location)
+
+
+_ODOMETRY_BRIDGED = Rule(
+    "odometry-bridged",
+    "topics",
+    NO_TOPIC,
+    SIMILAR,
+    "A bridge takes the transform of odometry that RViz shows to /tf.",
+    why=(
+        "RViz reports that its fixed frame does not exist and cannot place the robot, although "
+        "the robot moves in Gazebo."
+    ),
+    wrong="""
+Node(package='ros_gz_sim', executable='create', arguments=['-string', robot]),
+Node(package='ros_gz_bridge', executable='parameter_bridge',
+     arguments=['/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist']),
+""",
+    right="""
+Node(package='ros_gz_sim', executable='create', arguments=['-string', robot]),
+Node(package='ros_gz_bridge', executable='parameter_bridge',
+     arguments=['/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist',
+                '/tf@tf2_msgs/msg/TFMessage[gz.msgs.Pose_V']),
+""",
+    beside={
+        "odom.rviz": "",
+        "diff/rover.urdf": "",
+    },
+    at="rviz/odom.rviz",
+)
 
 
 def _odometry(workspace: Workspace, rows: Collection[BridgeRow]) -> Iterator[Mismatch]:
@@ -99,7 +164,7 @@ def _odometry(workspace: Workspace, rows: Collection[BridgeRow]) -> Iterator[Mis
                         f"the system {by} publishes the transform of {quoted(parent)} in Gazebo "
                         "only: no row of a bridge takes it to /tf"
                     )
-                    yield warning(ODOMETRY_BRIDGED, message, file.frame_location, at)
+                    yield warning(_ODOMETRY_BRIDGED, message, file.frame_location, at)
 
 
 def _has_more_bridges(workspace: Workspace) -> bool:

@@ -27,10 +27,9 @@ from grader.workspace.rules.names import (
     corrections,
 )
 from grader.workspace.rules.rule_table import (
-    CONTROLLER_STARTED,
-    MANAGER_PARAMETERS,
-    MANAGER_SECTION,
-    SPAWNER_MANAGER,
+    NO_CONTROLLER,
+    SIMILAR,
+    Rule,
 )
 
 _OTHER_TYPES = re.compile(r"load_controller|(?<![<-])\bparam\b(?!-)")  # of commands that set a type
@@ -62,6 +61,40 @@ def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _not_started(workspace, controllers)
 
 
+_SPAWNER_MANAGER = Rule(
+    "spawner-manager",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "The controller manager that a spawner asks is started.",
+    why=(
+        "The spawner waits for services of the controller manager that nothing offers. It waits"
+        " on or ends with a timeout, and no controller starts."
+    ),
+    wrong="""
+Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
+Node(
+    package='controller_manager',
+    executable='spawner',
+    arguments=['arm_controller', '-c', '/controler_manager'],
+),
+""",
+    right="""
+Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
+Node(
+    package='controller_manager',
+    executable='spawner',
+    arguments=['arm_controller', '-c', '/controller_manager'],
+),
+""",
+    frame="control/rover.launch.py",
+    beside={
+        "arm/rover.urdf": "",
+        "arm/controllers.yaml": "",
+    },
+)
+
+
 def _without_plugin(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield that a spawner waits for the controller manager of a simulation that starts none.
 
@@ -85,7 +118,7 @@ def _without_plugin(workspace: Workspace) -> Iterator[Mismatch]:
             )
             is_certain = not launch.more
             yield Mismatch(
-                SPAWNER_MANAGER, message, systems[0], spawners[0].location, is_certain=is_certain
+                _SPAWNER_MANAGER, message, systems[0], spawners[0].location, is_certain=is_certain
             )
 
 
@@ -169,11 +202,37 @@ def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact
                 f"({at.file_and_line})?"
             )
             either = corrections(name, spawner.location, meant)
-            yield Mismatch(SPAWNER_MANAGER, message, spawner.location, at, corrections=either)
+            yield Mismatch(_SPAWNER_MANAGER, message, spawner.location, at, corrections=either)
 
 
 def _is_manager(node: StartedNode) -> bool:
     return node.executable == CONTROL_NODE
+
+
+_MANAGER_PARAMETERS = Rule(
+    "manager-parameters",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "The controller manager gets the types of the controllers that spawners start.",
+    why=(
+        "For each spawner the controller manager prints that the 'type' param was not defined, "
+        "and it loads no such controller."
+    ),
+    wrong="""
+Node(package='controller_manager', executable='ros2_control_node'),
+Node(package='controller_manager', executable='spawner', arguments=['arm_controller']),
+""",
+    right="""
+Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
+Node(package='controller_manager', executable='spawner', arguments=['arm_controller']),
+""",
+    frame="control/rover.launch.py",
+    beside={
+        "arm/rover.urdf": "",
+        "arm/controllers.yaml": "",
+    },
+)
 
 
 def _without_type(
@@ -197,7 +256,7 @@ def _without_type(
             "the controller manager is not given the parameters with the type of "
             f"{_names_of(elsewhere)} ({at.file_and_line})"
         )
-        yield Mismatch(MANAGER_PARAMETERS, text, manager.location, at)
+        yield Mismatch(_MANAGER_PARAMETERS, text, manager.location, at)
         return
     for controller in lacking:
         if controller.is_own:
@@ -205,7 +264,7 @@ def _without_type(
                 f"only a spawner with --param-file reads the type of {quoted(controller.name)} "
                 f"here: give its spawner this file, or write the type below {MANAGER}"
             )
-            yield Mismatch(MANAGER_PARAMETERS, text, controller.location, manager.location)
+            yield Mismatch(_MANAGER_PARAMETERS, text, controller.location, manager.location)
 
 
 def _controllers_without_type(
@@ -243,6 +302,40 @@ def _spawned_without_parameters(launch: Launch) -> Iterator[StartedNode]:
             yield from controllers_of(spawner) or ()
 
 
+_MANAGER_SECTION = Rule(
+    "manager-section",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "The types of controllers are below controller_manager.",
+    why=(
+        "The controller manager ignores a section with another name without a message. Later "
+        "each spawner ends because the type of its controller is not defined."
+    ),
+    wrong="""
+controller_manger:
+  ros__parameters:
+    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+arm_controller:
+  ros__parameters:
+    {joints: [arm_joint], command_interfaces: [position], state_interfaces: [position]}
+""",
+    right="""
+controller_manager:
+  ros__parameters:
+    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+arm_controller:
+  ros__parameters:
+    {joints: [arm_joint], command_interfaces: [position], state_interfaces: [position]}
+""",
+    frame="controllers.yaml",
+    beside={
+        "arm/rover.urdf": "",
+        "spawn/rover.launch.py": "",
+    },
+)
+
+
 def _misspelt_managers(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the sections of types of controllers that are called nearly as the manager.
 
@@ -263,7 +356,7 @@ def _misspelt_managers(workspace: Workspace) -> Iterator[Mismatch]:
             f"the controller manager does not read the types below {name!r}; did you mean "
             f"{MANAGER!r}?"
         )
-        yield Mismatch(MANAGER_SECTION, message, at, corrections=corrections(name, at, MANAGER))
+        yield Mismatch(_MANAGER_SECTION, message, at, corrections=corrections(name, at, MANAGER))
 
 
 def _has_types(section: YamlNode) -> bool:
@@ -283,12 +376,48 @@ def _no_controllers(workspace: Workspace) -> Iterator[Mismatch]:
             quoted_names = [quoted(name) for name in sorted(filter(None, lacking))]
             names = enumerated(quoted_names, _MAX_CONTROLLERS)
             message = f"no parameter file of the controller manager has the type of {names}"
-            yield Mismatch(MANAGER_PARAMETERS, message, manager.location)
+            yield Mismatch(_MANAGER_PARAMETERS, message, manager.location)
 
 
 def _names_of(controllers: Sequence[Controller], word: str = "and") -> str:
     names = dict.fromkeys(quoted(controller.name) for controller in controllers)
     return enumerated(names, _MAX_CONTROLLERS, word)
+
+
+_CONTROLLER_STARTED = Rule(
+    "controller-started",
+    "controllers",
+    NO_CONTROLLER,
+    SIMILAR,
+    "A spawner starts one of the controllers that move joints, and one that publishes.",
+    why=(
+        "A controller without a spawner is not loaded. Its joints do not move, or without joint"
+        " states the links of the robot have no transforms in RViz."
+    ),
+    wrong="""
+Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
+Node(package='controller_manager', executable='spawner', arguments=['arm_controller']),
+""",
+    right="""
+Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
+Node(package='controller_manager', executable='spawner', arguments=['arm_controller']),
+Node(package='controller_manager', executable='spawner', arguments=['joint_state_broadcaster']),
+""",
+    frame="control/rover.launch.py",
+    beside={
+        "arm/rover.urdf": "",
+        "controllers.yaml": """
+controller_manager:
+  ros__parameters:
+    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
+arm_controller:
+  ros__parameters:
+    {joints: [arm_joint], command_interfaces: [position], state_interfaces: [position]}
+""",
+    },
+    at="config/controllers.yaml",
+)
 
 
 def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Iterator[Fact]:
@@ -308,7 +437,7 @@ def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Ite
     for kind in (publishing, moving):
         if kind and spawned.isdisjoint(controller.name for controller in kind):
             text = f"no spawner starts {_names_of(kind, 'or')}"
-            yield Mismatch(CONTROLLER_STARTED, text, kind[0].location)
+            yield Mismatch(_CONTROLLER_STARTED, text, kind[0].location)
 
 
 def started_controllers(workspace: Workspace) -> set[str | None] | None:

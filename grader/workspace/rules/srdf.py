@@ -12,11 +12,11 @@ from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Definition, Fact, Mismatch, Open, Use, among, warning
 from grader.workspace.rules.rule_table import (
-    DISABLED_PAIRS,
-    SRDF_GROUP,
-    SRDF_ROBOT,
-    STATE_LIMITS,
+    NO_FRAME,
+    OTHER_MOVEIT,
+    SIMILAR,
     DefinedKind,
+    Rule,
 )
 
 _LINKS = ("link1", "link2", "parent_link", "child_link", "base_link", "tip_link")
@@ -109,6 +109,22 @@ def _kind_of_name(element: Element, root: Element) -> DefinedKind | None:
     return _KINDS.get(element.tag)
 
 
+_SRDF_ROBOT = Rule(
+    "srdf-robot",
+    "moveit",
+    OTHER_MOVEIT,
+    OTHER_MOVEIT,
+    "An SRDF names its robot.",
+    why=(
+        "MoveIt prints 'Semantic description is not specified for the same robot as the URDF' "
+        "at each start, and the SRDF may be for another robot."
+    ),
+    wrong='<robot name="robot"><group name="base"><link name="base_link"/></group></robot>',
+    right='<robot name="rover"><group name="base"><link name="base_link"/></group></robot>',
+    frame="whole/rover.srdf",
+)
+
+
 def _other_robot(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
     """Yield that the description has another name than the only robot.
 
@@ -120,7 +136,23 @@ def _other_robot(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
     message = (
         f"the SRDF is of the robot {quoted(name)}, but the robot is named {quoted(robot.name)}"
     )
-    yield warning(SRDF_ROBOT, message, file.location(file.root, "name"))
+    yield warning(_SRDF_ROBOT, message, file.location(file.root, "name"))
+
+
+_SRDF_GROUP = Rule(
+    "srdf-group",
+    "moveit",
+    OTHER_MOVEIT,
+    OTHER_MOVEIT,
+    "A group of an SRDF is not empty.",
+    why=(
+        "MoveIt leaves out the group. A program that plans for it ends because the group was "
+        "not found, and RViz does not list it."
+    ),
+    wrong='<robot name="rover"><group name="base"/></robot>',
+    right='<robot name="rover"><group name="base"><link name="base_link"/></group></robot>',
+    frame="whole/rover.srdf",
+)
 
 
 def _empty_groups(file: XmlFile) -> Iterator[Mismatch]:
@@ -131,7 +163,30 @@ def _empty_groups(file: XmlFile) -> Iterator[Mismatch]:
                 f"the group {quoted(group.get('name', ''))} has no joint, link, chain or group: "
                 "MoveIt leaves it out"
             )
-            yield warning(SRDF_GROUP, message, file.location(group))
+            yield warning(_SRDF_GROUP, message, file.location(group))
+
+
+_STATE_LIMITS = Rule(
+    "state-limits",
+    "frames",
+    NO_FRAME,
+    SIMILAR,
+    "The states of an SRDF are within the limits of the joints.",
+    why=(
+        "MoveIt does not move a joint beyond its limits. A motion to the named state fails or "
+        "ends elsewhere, as when 90 degrees are written in place of radians."
+    ),
+    wrong="""
+<group_state name="up" group="arm"><joint name="arm_joint" value="90"/></group_state>
+""",
+    right="""
+<group_state name="up" group="arm"><joint name="arm_joint" value="0.9"/></group_state>
+""",
+    frame="rover.srdf",
+    beside={
+        "arm/rover.urdf": "",
+    },
+)
 
 
 def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
@@ -149,11 +204,48 @@ def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
                     f"<group_state>: {quoted(name)} is at {value:g}; its limits are "
                     f"{limit.lower:g} and {limit.upper:g}"
                 )
-                yield Mismatch(STATE_LIMITS, message, file.location(element, "value"))
+                yield Mismatch(_STATE_LIMITS, message, file.location(element, "value"))
 
 
 def _is_beyond(value: float, limit: Limit) -> bool:
     return value < limit.lower - _ROUNDING or value > limit.upper + _ROUNDING
+
+
+_DISABLED_PAIRS = Rule(
+    "disabled-pairs",
+    "frames",
+    SIMILAR,
+    SIMILAR,
+    "An SRDF disables the collisions between links that a joint connects.",
+    why=(
+        "MoveIt checks the two links for collisions. If the shapes touch at the joint, each "
+        "start state counts as a collision, and planning fails."
+    ),
+    wrong="""
+<disable_collisions link1="base_link" link2="a" reason="Adjacent"/>
+<disable_collisions link1="a" link2="b" reason="Adjacent"/>
+""",
+    right="""
+<disable_collisions link1="base_link" link2="a" reason="Adjacent"/>
+<disable_collisions link1="a" link2="b" reason="Adjacent"/>
+<disable_collisions link1="b" link2="arm" reason="Adjacent"/>
+""",
+    frame="rover.srdf",
+    beside={
+        "chain/rover.urdf": """
+<robot name="rover">
+  <link name="base_link"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <link name="a"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <link name="b"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <link name="arm"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <joint name="a_joint" type="fixed"><parent link="base_link"/><child link="a"/></joint>
+  <joint name="b_joint" type="fixed"><parent link="a"/><child link="b"/></joint>
+  <joint name="arm_joint" type="continuous"><parent link="b"/><child link="arm"/></joint>
+</robot>
+""",
+    },
+    at="config/rover.srdf",
+)
 
 
 def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
@@ -178,4 +270,4 @@ def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
             f"a joint connects {quoted(joint.parent)} and {quoted(joint.child)}, but "
             "<disable_collisions> does not name them"
         )
-        yield warning(DISABLED_PAIRS, message, file.location(file.root))
+        yield warning(_DISABLED_PAIRS, message, file.location(file.root))

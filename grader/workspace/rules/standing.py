@@ -6,7 +6,25 @@
 from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.ros.urdf.driving import DescribedDriving
-from grader.workspace.rules.rule_table import ROBOT_STANDS
+from grader.workspace.rules.rule_table import (
+    OTHER_VALUE,
+    Rule,
+)
+
+_ROBOT_STANDS = Rule(
+    "robot-stands",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "A robot stands level on its wheels, and they drive it straight ahead.",
+    why=(
+        "In Gazebo the robot tilts until it rests on other parts, or drives a curve. Its "
+        "sensors point up or down, and a lidar may see the ground."
+    ),
+    wrong='<origin xyz="0.15 0 -0.06"/>',
+    right='<origin xyz="0.15 0 -0.03"/>',
+    frame="standing/rover.urdf",
+)
 
 
 def standing_problem(path: str, driving: DescribedDriving, *, with_course: bool) -> Problem | None:
@@ -28,4 +46,4 @@ def standing_problem(path: str, driving: DescribedDriving, *, with_course: bool)
         return None
     places = [fault.at.resolve() for fault in faults if fault.at is not None]
     at = next(iter(places), Location(path, 1, 1))
-    return ROBOT_STANDS.problem("; ".join(texts), at, is_certain=False)
+    return _ROBOT_STANDS.problem("; ".join(texts), at, is_certain=False)

@@ -13,7 +13,10 @@ from grader.workspace.model.code_text import code_alone
 from grader.workspace.model.own_code import CPP_ENDINGS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, warning
-from grader.workspace.rules.rule_table import PROGRAM_TERMINAL
+from grader.workspace.rules.rule_table import (
+    MAY_WAIT,
+    Rule,
+)
 
 # What reads or changes the settings of a terminal, and that it is the one of the standard input.
 _KEYS = re.compile(r"\b(?:tcgetattr|setraw|setcbreak)\s*+\(")
@@ -28,6 +31,23 @@ _OTHERWISE = re.compile(
 _IF_MAIN = re.compile(r"^if\s++__name__\b", re.MULTILINE)  # what follows is run by no entry point
 _OTHER_TERMINAL = re.compile(r"/dev/tty\b|['\"]launch-prefix['\"]")
 _PORT = "/dev/tty"  # also of another device
+
+
+_PROGRAM_TERMINAL = Rule(
+    "program-terminal",
+    "wiring",
+    MAY_WAIT,
+    MAY_WAIT,
+    "A program that reads keys or lines is started in a terminal.",
+    why=(
+        "ros2 launch does not pass keys to a program. It waits without end, or it stops with "
+        "'Inappropriate ioctl for device'."
+    ),
+    wrong="Node(package='teleop_twist_keyboard', executable='teleop_twist_keyboard'),",
+    right="""
+Node(package='teleop_twist_keyboard', executable='teleop_twist_keyboard', prefix='xterm -e'),
+""",
+)
 
 
 def terminal_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -49,7 +69,7 @@ def terminal_facts(workspace: Workspace) -> Iterator[Fact]:
                 f"{node.executable} reads keys or lines, and ros2 launch gives it no terminal: "
                 "start it with the prefix xterm -e, or with ros2 run in another terminal"
             )
-            yield warning(PROGRAM_TERMINAL, message, node.location)
+            yield warning(_PROGRAM_TERMINAL, message, node.location)
 
 
 def _reads_keys(workspace: Workspace, node: StartedNode) -> bool:

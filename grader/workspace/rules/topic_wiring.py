@@ -16,10 +16,8 @@ from grader.workspace.graph.node_ends import deciding_parameter
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    COMMAND_TYPE,
-    DISPLAY_QUALITY,
-    IMAGE_TRANSPORT,
-    ONE_COMMANDER,
+    NO_COMPANION,
+    Rule,
 )
 
 _COMMANDS = ("geometry_msgs.msg.Twist", "geometry_msgs.msg.TwistStamped")
@@ -35,6 +33,29 @@ def topic_wiring_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _other_transport(publishers, subscriptions)
     yield from _displays(workspace, publishers)
     yield from _programs(graph)
+
+
+_ONE_COMMANDER = Rule(
+    "one-commander",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "One node commands the robot.",
+    why=(
+        "The robot obeys each message in turn: it jerks between two speeds, and the next "
+        "command of the other node cancels a stop."
+    ),
+    wrong="self.commands = self.create_publisher(Twist, 'cmd_vel', 10)",
+    right="""
+self.commands = self.create_publisher(Twist, 'pilot/commands', 10)  # an input of twist_mux
+""",
+    frame="start/pilot.py",
+    beside={
+        "joystick.py": "",
+        "motors.py": "",
+    },
+    at="rover/joystick.py",
+)
 
 
 def _two_commanders(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
@@ -53,7 +74,23 @@ def _two_commanders(publishers: Sequence[End], subscriptions: Sequence[End]) -> 
                 f"{each.node.executable} and {before.node.executable} both publish {each.name}: "
                 "the robot obeys each in turn; twist_mux chooses one"
             )
-            yield warning(ONE_COMMANDER, message, each.location, before.location)
+            yield warning(_ONE_COMMANDER, message, each.location, before.location)
+
+
+_IMAGE_TRANSPORT = Rule(
+    "image-transport",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "Images are read from the topic that carries them.",
+    why=(
+        "The topic carries compressed images, which are messages of another type. The "
+        "subscription is not matched, so no image arrives."
+    ),
+    wrong="self.create_subscription(Image, 'image/compressed', self.receive, 10)",
+    right="self.create_subscription(CompressedImage, 'image/compressed', self.receive, 10)",
+    frame="start/pilot.py",
+)
 
 
 def _other_transport(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
@@ -68,7 +105,7 @@ def _other_transport(publishers: Sequence[End], subscriptions: Sequence[End]) ->
             f"the topic {each.name} carries {kind}, and is subscribed to with {_IMAGE}: "
             f"subscribe to {topic}, or with the other type"
         )
-        yield warning(IMAGE_TRANSPORT, message, each.location)
+        yield warning(_IMAGE_TRANSPORT, message, each.location)
 
 
 def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Mismatch]:
@@ -86,6 +123,38 @@ def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Misma
                 yield from _other_reliability(display, offered)
 
 
+_DISPLAY_QUALITY = Rule(
+    "display-quality",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "A display of RViz asks for no more than is offered.",
+    why=(
+        "A best effort publisher is not matched with a reliable subscription. RViz prints a "
+        "warning of incompatible QoS, and the display stays empty."
+    ),
+    wrong="""
+- Class: rviz_default_plugins/Image
+  Name: Image
+  Enabled: true
+  Topic: {Value: /image, Reliability Policy: Reliable}
+""",
+    right="""
+- Class: rviz_default_plugins/Image
+  Name: Image
+  Enabled: true
+  Topic: {Value: /image, Reliability Policy: Best Effort}
+""",
+    frame="show/rover.rviz",
+    beside={
+        "start/pilot.py": """
+best_effort = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+self.images = self.create_publisher(Image, 'image', best_effort)
+""",
+    },
+)
+
+
 def _other_reliability(
     display: Display, offered: Mapping[str, Collection[str | None]]
 ) -> Iterator[Mismatch]:
@@ -99,7 +168,33 @@ def _other_reliability(
             f"the display {quoted(display.name)} asks for reliable messages of "
             f"{topic.text}, which are published as best effort: it stays empty"
         )
-        yield warning(DISPLAY_QUALITY, message, policy.location)
+        yield warning(_DISPLAY_QUALITY, message, policy.location)
+
+
+_COMMAND_TYPE = Rule(
+    "command-type",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "A well-known program sends a controller the type that it reads.",
+    why=(
+        "The controller is not matched with the program. Keys or buttons publish commands, but "
+        "the robot does not move, and no error is printed."
+    ),
+    wrong="""
+Node(package='teleop_twist_keyboard', executable='teleop_twist_keyboard', prefix='xterm -e',
+     remappings=[('cmd_vel', '/drive_controller/cmd_vel')]),
+""",
+    right="""
+Node(package='teleop_twist_keyboard', executable='teleop_twist_keyboard', prefix='xterm -e',
+     remappings=[('cmd_vel', '/drive_controller/cmd_vel')], parameters=[{'stamped': True}]),
+""",
+    frame="drive/rover.launch.py",
+    beside={
+        "drive/rover.urdf": "",
+        "drive/controllers.yaml": "",
+    },
+)
 
 
 def _programs(graph: Graph) -> Iterator[Mismatch]:
@@ -117,4 +212,4 @@ def _programs(graph: Graph) -> Iterator[Mismatch]:
                 f"{publisher.owner} publishes {publisher.name} with {publisher.type}, but the "
                 f"controller subscribes to it with {reader.type}: set its parameter {parameter}"
             )
-            yield warning(COMMAND_TYPE, message, publisher.location, reader.location)
+            yield warning(_COMMAND_TYPE, message, publisher.location, reader.location)

@@ -17,7 +17,10 @@ from grader.workspace.graph.unread_ends import Sought, is_all_read, may_be_opene
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.meeting_ends import TOPICS
 from grader.workspace.rules.names import Fact, Mismatch, warning
-from grader.workspace.rules.rule_table import TOPIC_PARTNER, UNSTARTED_TYPE
+from grader.workspace.rules.rule_table import (
+    NO_COMPANION,
+    Rule,
+)
 
 _OF_ENDPOINT = 2  # parts of an endpoint that is compared
 
@@ -38,6 +41,26 @@ def unmet_topic_facts(workspace: Workspace) -> Iterator[Fact]:
 
 # --- Programs that no launch file starts
 # ----------------------------------------------------------------------
+
+
+_UNSTARTED_TYPE = Rule(
+    "unstarted-type",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "Two programs of a package that share a topic have one type for it.",
+    why=(
+        "The middleware matches only ends with equal types. Once both programs run, the "
+        "subscription receives nothing, and no error tells why."
+    ),
+    wrong="self.create_subscription(Twist, 'distance', self.receive, 10)",
+    right="self.create_subscription(Float64, 'distance', self.receive, 10)",
+    frame="start/pilot.py",
+    beside={
+        "meter.py": "",
+        "rover.launch.py": "",
+    },
+)
 
 
 def _of_unstarted(workspace: Workspace) -> Iterator[Mismatch]:
@@ -69,7 +92,7 @@ def _of_unstarted(workspace: Workspace) -> Iterator[Mismatch]:
                     f"{other.program} publishes it, with {other.endpoint.type} "
                     f"({place.file_and_line})"
                 )
-                yield warning(UNSTARTED_TYPE, message, at, place)
+                yield warning(_UNSTARTED_TYPE, message, at, place)
 
 
 def _of_same_package(one: _Opened, others: Sequence[_Opened]) -> _Opened | None:
@@ -127,6 +150,25 @@ def _of_one_launch(graph: Graph) -> Iterator[Mismatch]:
             yield from _partners(graph.workspace, asking, offering[0])
 
 
+_TOPIC_PARTNER = Rule(
+    "topic-partner",
+    "wiring",
+    NO_COMPANION,
+    NO_COMPANION,
+    "A topic that a node waits for is one that another node of its launch publishes.",
+    why=(
+        "The callback is never called, and the messages of the other node have no reader. Both "
+        "nodes run without an error."
+    ),
+    wrong="self.create_subscription(Float64, 'height', self.receive, 10)",
+    right="self.create_subscription(Float64, 'distance', self.receive, 10)",
+    frame="start/pilot.py",
+    beside={
+        "meter.py": "",
+    },
+)
+
+
 def _partners(workspace: Workspace, asking: End, offering: End) -> Iterator[Mismatch]:
     """Yield that the topic of a subscription is meant to be that of a publisher."""
     if _is_of_other_rule(asking, offering):
@@ -136,7 +178,7 @@ def _partners(workspace: Workspace, asking: End, offering: End) -> Iterator[Mism
             f"nothing publishes {asking.name}, and nothing subscribes to {offering.name}, "
             f"which has its type {asking.type} ({offering.location.file_and_line})"
         )
-        yield warning(TOPIC_PARTNER, message, asking.location, offering.location)
+        yield warning(_TOPIC_PARTNER, message, asking.location, offering.location)
 
 
 def _is_of_other_rule(asking: End, offering: End) -> bool:

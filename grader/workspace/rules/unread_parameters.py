@@ -8,7 +8,10 @@ from grader.base.source import Location
 from grader.ros.nodes.node_facts import PackageNodes
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, warning
-from grader.workspace.rules.rule_table import PARAMETER_READ
+from grader.workspace.rules.rule_table import (
+    UNREAD,
+    Rule,
+)
 
 _TEXT = re.compile(r"[\"']([\w./]++)[\"']")
 _STATEMENT = "self.declare_parameter("  # begins a declaration whose value nothing uses
@@ -16,6 +19,31 @@ _STATEMENT = "self.declare_parameter("  # begins a declaration whose value nothi
 _READS_OTHERS = re.compile(
     r"get_parameters\(|get_parameters_by_prefix|_parameters|describe_parameters"
     r"|get_parameter\((?!\s*+[\"'][\w./]++[\"']\s*+\))"
+)
+
+
+_PARAMETER_READ = Rule(
+    "parameter-read",
+    "words",
+    UNREAD,
+    UNREAD,
+    "Code reads the parameters that it declares.",
+    why=(
+        "ros2 param set succeeds, and the behaviour of the node stays the same. A value in a "
+        "launch file has no effect either."
+    ),
+    wrong="""
+def __init__(self):
+    super().__init__('pilot')
+    self.declare_parameter('speed', 1.0)
+""",
+    right="""
+def __init__(self):
+    super().__init__('pilot')
+    self.declare_parameter('speed', 1.0)
+    self.speed = self.get_parameter('speed').value
+""",
+    frame="pilot.py",
 )
 
 
@@ -39,7 +67,7 @@ def unread_parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         for at, name in declared.items():
             if counts[name] == 1 and _is_statement(lines[at.path][at.line - 1 :], name):
                 message = f"nothing reads the parameter {name!r}, which is declared here"
-                yield warning(PARAMETER_READ, message, at)
+                yield warning(_PARAMETER_READ, message, at)
 
 
 def _is_statement(lines: Sequence[str], name: str) -> bool:

@@ -9,7 +9,10 @@ from grader.base.text import enumerated, quoted
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.arguments import includes_others
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
-from grader.workspace.rules.rule_table import LAUNCH_ARGUMENT_USED, XACRO_ARGUMENT_USED
+from grader.workspace.rules.rule_table import (
+    UNREAD,
+    Rule,
+)
 
 _DECLARED = re.compile(r"\bDeclareLaunchArgument\(\s*+(?:name\s*+=\s*+)?[\"'](\w++)[\"']")
 _TEXT = re.compile(r"[\"'](\w++)[\"']")
@@ -35,6 +38,46 @@ def unused_argument_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _of_xacro(workspace)
 
 
+_LAUNCH_ARGUMENT_USED = Rule(
+    "launch-argument-used",
+    "words",
+    UNREAD,
+    UNREAD,
+    "A launch file uses the arguments that it declares.",
+    why=(
+        "ros2 launch --show-args lists the argument and a value is accepted, but it changes "
+        "nothing: nodes run as without it."
+    ),
+    wrong="""
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument('use_sim_time', default_value='true'),
+        Node(package='turtlesim', executable='turtlesim_node'),
+    ])
+""",
+    right="""
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    time = LaunchConfiguration('use_sim_time')
+    return LaunchDescription([
+        DeclareLaunchArgument('use_sim_time', default_value='true'),
+        Node(package='turtlesim', executable='turtlesim_node', parameters=[{'use_sim_time': time}]),
+    ])
+""",
+    frame="turtle.launch.py",
+)
+
+
 def _of_launch_files(workspace: Workspace) -> Iterator[Fact]:
     """Yield the arguments of launch files in Python whose names nothing else in the file has."""
     for package in workspace.packages:
@@ -49,7 +92,7 @@ def _of_launch_files(workspace: Workspace) -> Iterator[Fact]:
                 names = enumerated([quoted(match[1]) for match in unused])
                 noun = "argument" if len(unused) == 1 else "arguments"
                 message = f"nothing in the launch file uses the {noun} {names}"
-                yield warning(LAUNCH_ARGUMENT_USED, message, source.at(unused[0].start(1)))
+                yield warning(_LAUNCH_ARGUMENT_USED, message, source.at(unused[0].start(1)))
 
 
 def _may_be_used_otherwise(workspace: Workspace, source: Source) -> bool:
@@ -72,6 +115,37 @@ def _used_arguments(sources: Iterable[Source]) -> set[str]:
     return used
 
 
+_XACRO_ARGUMENT_USED = Rule(
+    "xacro-argument-used",
+    "words",
+    UNREAD,
+    UNREAD,
+    "The files of xacro use the arguments that they declare.",
+    why=(
+        "xacro accepts any value and prints the same robot. A change of the value has no effect"
+        " in RViz or Gazebo."
+    ),
+    wrong="""
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="height" default="0.2"/>
+  <link name="base_link"/>
+</robot>
+""",
+    right="""
+<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="height" default="0.2"/>
+  <link name="base_link">
+    <visual><geometry><box size="0.4 0.3 $(arg height)"/></geometry></visual>
+  </link>
+</robot>
+""",
+    frame="rover.urdf.xacro",
+    beside={
+        "rover.urdf": "",
+    },
+)
+
+
 def _of_xacro(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the arguments of xacro that no file of xacro in the workspace uses.
 
@@ -87,4 +161,4 @@ def _of_xacro(workspace: Workspace) -> Iterator[Mismatch]:
             names = enumerated([quoted(match[1]) for match in unused])
             noun = "argument" if len(unused) == 1 else "arguments"
             message = f"nothing uses the {noun} {names} of xacro"
-            yield warning(XACRO_ARGUMENT_USED, message, source.at(unused[0].start(1)))
+            yield warning(_XACRO_ARGUMENT_USED, message, source.at(unused[0].start(1)))

@@ -9,7 +9,11 @@ from grader.ros.known.rosdep_words import rosdep_words
 from grader.ros.package.package import Package
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch
-from grader.workspace.rules.rule_table import LIBRARY_DECLARED
+from grader.workspace.rules.rule_table import (
+    BROUGHT,
+    NO_DEPENDENCY,
+    Rule,
+)
 from grader.workspace.rules.used_packages import imported_modules
 
 # What differs between the names of one library in keys, in pip and in apt.
@@ -83,6 +87,32 @@ def _is_declared(use: _LibraryUse, declared: set[str], names: Collection[str]) -
     )
 
 
+_LIBRARY_DECLARED = Rule(
+    "library-declared",
+    "keys",
+    NO_DEPENDENCY,
+    BROUGHT,
+    "package.xml declares the libraries of Python and C++ that the files of the package use.",
+    why=(
+        "rosdep does not install the library. On another machine the import raises "
+        "ModuleNotFoundError, or the compiler does not find the header."
+    ),
+    wrong="<exec_depend>rclpy</exec_depend>",
+    right="<exec_depend>python3-serial</exec_depend>",
+    frame="python/package.xml",
+    beside={
+        "driver.py": """
+import serial
+
+
+def main():
+    serial.Serial('/dev/ttyUSB0')
+""",
+    },
+    at="rover/driver.py",
+)
+
+
 def _undeclared(
     package: Package, use: _LibraryUse, declared: Collection[str]
 ) -> Iterator[Mismatch]:
@@ -93,7 +123,7 @@ def _undeclared(
         return
     message = f"package.xml of {package.name!r} does not declare {use.key!r}, which is used here"
     start = package.manifest.name_location
-    wrong = Mismatch(LIBRARY_DECLARED, message, use.location, start, not is_brought)
+    wrong = Mismatch(_LIBRARY_DECLARED, message, use.location, start, not is_brought)
     tag = "depend" if use.is_built else "exec_depend"
     yield wrong._replace(word=use.name, lacked=use.key, tag=tag)
 

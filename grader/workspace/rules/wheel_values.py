@@ -36,11 +36,8 @@ from grader.workspace.model.under_arguments import may_vary
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    WHEEL_AXIS,
-    WHEEL_DISTANCE,
-    WHEEL_LIMIT,
-    WHEEL_SIDE,
-    WHEEL_SIZE,
+    OTHER_VALUE,
+    WRONG_VALUE,
     Rule,
 )
 
@@ -134,13 +131,35 @@ def wheel_value_facts(workspace: Workspace) -> Iterator[Fact]:
             yield fault._replace(is_certain=fault.is_certain and not is_open)
 
 
+_WHEEL_LIMIT = Rule(
+    "wheel-limit",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "A wheel that is driven in Gazebo turns without limits.",
+    why=(
+        "The wheel stops when it reaches the limit of its joint. The robot drives a short "
+        "distance, then stands still or turns aside."
+    ),
+    wrong="""
+<joint name="right_joint" type="revolute">
+  <limit lower="-1.57" upper="1.57" effort="5" velocity="10"/>
+""",
+    right="""
+<joint name="right_joint" type="continuous">
+  <limit effort="5" velocity="10"/>
+""",
+    frame="limited/rover.urdf",
+)
+
+
 def _faults_under_all(source: _Source) -> Sequence[Mismatch]:
     """Return the faults under the first robot; none where the numbers are those of another one."""
     first: Sequence[Mismatch] = ()
     for robot in source.robots:
         faults = [*_faults_of(source, Configuration(robot.robot))]
         if robot.root.find("gazebo/plugin") is None:  # nothing else stops a joint
-            faults = [fault for fault in faults if fault.rule is not WHEEL_LIMIT]
+            faults = [fault for fault in faults if fault.rule is not _WHEEL_LIMIT]
         if not faults:
             return ()
         first = first or faults
@@ -312,6 +331,30 @@ def _places_of_joints(wheels: _Wheels, groups: list[list[_Word]]) -> Mapping[str
     return places
 
 
+WHEEL_SIDE = Rule(
+    "wheel-side",
+    "values",
+    WRONG_VALUE,
+    OTHER_VALUE,
+    "The left and right wheels of a controller or a Gazebo plugin are on their sides.",
+    why=(
+        "A command to turn left turns the robot right. The odometry reports the opposite of the"
+        " motion, so maps and localization are wrong."
+    ),
+    wrong="""
+<left_joint>right_joint</left_joint>
+<right_joint>left_joint</right_joint>
+<wheel_separation>0.3</wheel_separation>
+""",
+    right="""
+<left_joint>left_joint</left_joint>
+<right_joint>right_joint</right_joint>
+<wheel_separation>0.3</wheel_separation>
+""",
+    frame="wheels/rover.urdf",
+)
+
+
 def _other_sides(placed: _PlacedWheels) -> Iterator[Mismatch]:
     """Yield that left wheels are on the right, and the reverse.
 
@@ -329,6 +372,23 @@ def _other_sides(placed: _PlacedWheels) -> Iterator[Mismatch]:
         sides = [f"{quoted(each.joint.name)} is at y {each.middle[1]:.4g} m" for each in exchanged]
         message = f"left and right wheels are exchanged: {', '.join(sides)} in {base}"
         yield placed.fault(WHEEL_SIDE, exchanged, message, is_certain=True)
+
+
+_WHEEL_AXIS = Rule(
+    "wheel-axis",
+    "values",
+    OTHER_VALUE,
+    OTHER_VALUE,
+    "A positive speed of a wheel drives forward.",
+    why=(
+        "The wheel rotates backward at a forward command. The robot drives backward or rotates "
+        "in place, while the odometry says otherwise."
+    ),
+    wrong='<axis xyz="0 -1 0"/>',
+    right='<axis xyz="0 1 0"/>',
+    frame="turned/rover.urdf",
+    at="urdf/rover.urdf",
+)
 
 
 def _other_axes(placed: _PlacedWheels) -> Iterator[Mismatch]:
@@ -349,13 +409,13 @@ def _other_axes(placed: _PlacedWheels) -> Iterator[Mismatch]:
             f"{_joints(across)} should turn about the axle from right to left, not about "
             f"{x:.3g} {y:.3g} {z:.3g} in {base}"
         )
-        yield placed.fault(WHEEL_AXIS, across, message)
+        yield placed.fault(_WHEEL_AXIS, across, message)
     if placed.backward:
         message = (
             f"a positive speed of {_joints(placed.backward)} drives toward -x of {base}: the axis "
             "should point to the left"
         )
-        yield placed.fault(WHEEL_AXIS, placed.backward, message)
+        yield placed.fault(_WHEEL_AXIS, placed.backward, message)
 
 
 def _limited_wheels(placed: _PlacedWheels) -> Iterator[Mismatch]:
@@ -376,7 +436,7 @@ def _limited_wheels(placed: _PlacedWheels) -> Iterator[Mismatch]:
         )
         at = limit.location or joint.location
         if at is not None:
-            yield warning(WHEEL_LIMIT, message, at.resolve(), placed.places[joint.name])
+            yield warning(_WHEEL_LIMIT, message, at.resolve(), placed.places[joint.name])
 
 
 def _toward_left(wheels: _Wheels) -> Vector:
@@ -420,6 +480,30 @@ def _faults_of_number(number: _WheelNumber, wheels: _Wheels) -> Iterator[Mismatc
         yield from _other_distance(number, value, wheels)
 
 
+_WHEEL_DISTANCE = Rule(
+    "wheel-distance",
+    "values",
+    WRONG_VALUE,
+    OTHER_VALUE,
+    "The track and wheelbase of a controller or a Gazebo plugin are those of the robot.",
+    why=(
+        "The robot turns more or less than commanded. The angle of the odometry is wrong after "
+        "each turn, so maps are distorted."
+    ),
+    wrong="""
+<left_joint>left_joint</left_joint>
+<right_joint>right_joint</right_joint>
+<wheel_separation>0.6</wheel_separation>
+""",
+    right="""
+<left_joint>left_joint</left_joint>
+<right_joint>right_joint</right_joint>
+<wheel_separation>0.3</wheel_separation>
+""",
+    frame="wheels/rover.urdf",
+)
+
+
 def _other_distance(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
     """Yield that the wheels of the robot are not as far apart as a number says.
 
@@ -430,7 +514,7 @@ def _other_distance(number: _WheelNumber, value: float, wheels: _Wheels) -> Iter
     """
     key, at = number.key, number.word.location
     if value < 0.0:
-        yield Mismatch(WHEEL_DISTANCE, _negative(key, value), at)
+        yield Mismatch(_WHEEL_DISTANCE, _negative(key, value), at)
         return
     measured, slack, what = _SPANS[number.kind](wheels)
     low, high = measured - slack, measured + slack
@@ -444,7 +528,7 @@ def _other_distance(number: _WheelNumber, value: float, wheels: _Wheels) -> Iter
     if slack:
         message += f" ({low:.4g} to {high:.4g} m with the width of the wheels)"
     is_certain = is_track and _is_other_half(value, measured, wheels)
-    yield Mismatch(WHEEL_DISTANCE, message, at, _place(wheels.all[0]), is_certain)
+    yield Mismatch(_WHEEL_DISTANCE, message, at, _place(wheels.all[0]), is_certain)
 
 
 def _negative(key: str, value: float) -> str:
@@ -476,6 +560,30 @@ def _wheels_of_other_size(wheels: _Wheels, value: float, factor: float) -> list[
     return others if fitting else others[:1]
 
 
+_WHEEL_SIZE = Rule(
+    "wheel-size",
+    "values",
+    WRONG_VALUE,
+    OTHER_VALUE,
+    "The wheel radius of a controller or a Gazebo plugin is that of the robot.",
+    why=(
+        "The robot drives faster or slower than commanded, and the distance of the odometry is "
+        "wrong by the same factor."
+    ),
+    wrong="""
+<left_joint>left_joint</left_joint>
+<right_joint>right_joint</right_joint>
+<wheel_radius>0.1</wheel_radius>
+""",
+    right="""
+<left_joint>left_joint</left_joint>
+<right_joint>right_joint</right_joint>
+<wheel_radius>0.05</wheel_radius>
+""",
+    frame="wheels/rover.urdf",
+)
+
+
 def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
     """Yield that no wheel has a radius, and that wheels of one radius have several.
 
@@ -483,13 +591,13 @@ def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterato
     """
     key, kind, at = number.key, number.kind, number.word.location
     if value < 0.0:
-        yield Mismatch(WHEEL_SIZE, _negative(key, value), at)
+        yield Mismatch(_WHEEL_SIZE, _negative(key, value), at)
         return
     factor = 2.0 if kind == "diameter" else 1.0
     for wheel in _wheels_of_other_size(wheels, value, factor):
         name, size = quoted(wheel.joint.name), factor * wheel.radii[0]
         message = f"{key} is {value:g} m; the wheel of {name} has the {kind} {size:.4g} m"
-        yield warning(WHEEL_SIZE, message, at, _place(wheel))
+        yield warning(_WHEEL_SIZE, message, at, _place(wheel))
 
 
 def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:

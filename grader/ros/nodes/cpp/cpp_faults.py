@@ -138,7 +138,7 @@ class _CppSearch:
                         f"nothing: call LifecycleNode::{_ACTIVATES}(state)"
                     )
                     at = function.node.location
-                    yield CodeFault("not activated", message, at, made.location)
+                    yield CodeFault("publisher-activated", message, at, made.location)
                     break
 
     def without_goal_state(self) -> Iterator[CodeFault]:
@@ -152,7 +152,7 @@ class _CppSearch:
                         "nothing sets the state of a goal, so rclcpp_action cancels it; "
                         "call succeed()"
                     )
-                    yield CodeFault("no goal state", message, call.location, is_certain=False)
+                    yield CodeFault("goal-state", message, call.location, is_certain=False)
 
     def rejected_goals(self) -> Iterator[CodeFault]:
         """Yield action servers in files in which goals are rejected, and none is accepted."""
@@ -170,7 +170,7 @@ class _CppSearch:
                     message = (
                         "the server rejects each goal: GoalResponse::ACCEPT_AND_EXECUTE accepts"
                     )
-                    yield CodeFault("rejects goals", message, call.location, is_certain=False)
+                    yield CodeFault("goal-state", message, call.location, is_certain=False)
 
     def destroyed(self) -> Iterator[CodeFault]:
         """Yield what a method makes and nothing keeps: it is destroyed when the method ends."""
@@ -184,7 +184,7 @@ class _CppSearch:
                     message = (
                         f"nothing keeps this {kind}: it is destroyed when {function.name}() ends"
                     )
-                    yield CodeFault("destroyed at once", message, call.location)
+                    yield CodeFault("entity-kept", message, call.location)
             if function.name == function.owner.rpartition("::")[2]:
                 yield from self._lost_listeners(function)
 
@@ -194,7 +194,7 @@ class _CppSearch:
             is_listener = written.rpartition("::")[2] == _LISTENER
             if is_listener and self._is_lost(node, constructor):
                 message = "nothing keeps this TransformListener: the buffer stays empty"
-                yield CodeFault("destroyed at once", message, node.location)
+                yield CodeFault("entity-kept", message, node.location)
 
     def _is_lost(self, made: CppNode, function: CppFunction) -> bool:
         """Return whether an object is not kept.
@@ -225,7 +225,7 @@ class _CppSearch:
                 zero = _last_zero(parts)
                 if zero is not None and self._is_only_sent(path, function):
                     message = "the rotation 0 0 0 0 turns nothing: tf2 ignores the transform"
-                    yield CodeFault("no rotation", message, zero.location)
+                    yield CodeFault("rotation-set", message, zero.location)
 
     def _is_only_sent(self, path: str, function: CppFunction) -> bool:
         """Return whether nothing but the statements that are read can set a transform."""
@@ -253,7 +253,7 @@ class _CppSearch:
             for call in self._calls(function, *_LOOKING_UP):
                 if self._is_own_buffer(call):
                     message = "the buffer stays empty: nothing makes a TransformListener"
-                    yield CodeFault("no listener", message, call.location)
+                    yield CodeFault("buffer-listener", message, call.location)
                     return
 
     def _is_made(self, name: str) -> bool:
@@ -304,7 +304,7 @@ class _CppSearch:
         )
         if callbacks and mains[0].body is not None:
             message = "nothing spins the node: its callbacks are never called"
-            yield CodeFault("nothing spins", message, mains[0].node.location)
+            yield CodeFault("node-spins", message, mains[0].node.location)
 
     def waiting(self) -> Iterator[CodeFault]:
         """Yield callbacks that wait for a response, which the same thread would have to receive."""
@@ -324,7 +324,7 @@ class _CppSearch:
                 name = called_name(call)
                 callback = f"the callback {function.name}()"
                 message = f"while {name}() in {callback} waits, no other callback runs"
-                yield CodeFault("sleeps in a callback", message, call.location, is_certain=False)
+                yield CodeFault("callback-sleep", message, call.location, is_certain=False)
                 break
 
     @cached_property
@@ -344,7 +344,7 @@ class _CppSearch:
         for call in spins:
             if self._is_in_callback(call, function) and _is_given_itself(call):
                 message = "a callback must not spin its own node: rclcpp throws an error"
-                yield CodeFault("waits in a callback", message, call.location)
+                yield CodeFault("callback-wait", message, call.location)
         if spins:
             return
         for call in self._calls(function, *_WAITING):
@@ -352,7 +352,7 @@ class _CppSearch:
                 message = (
                     "this callback waits for a response that only the next callback can receive"
                 )
-                yield CodeFault("waits in a callback", message, call.location)
+                yield CodeFault("callback-wait", message, call.location)
 
     def _words(self) -> set[str]:
         """Return the words in the files of the unit."""

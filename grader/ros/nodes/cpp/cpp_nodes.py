@@ -732,7 +732,7 @@ class _Target:
             message = f"no source registers the component {component.plugin!r}{guess}"
             related = registered[meant] if meant is not None else None
             at, is_started = setup.location(component.at), bool(component.executable)
-            yield CodeFault("not registered", message, at, related, is_certain=is_started)
+            yield CodeFault("component-macro", message, at, related, is_certain=is_started)
 
     def programs(self, package: Package) -> Iterator[NodeProgram]:
         """Yield the programs that the target is, and those of its components."""

@@ -54,7 +54,7 @@ def _without_main(compiled: CompiledTarget) -> Iterator[CodeFault]:
     is_component = any(True for file in unit.files for _ in file.found(_REGISTERED))
     advice = ": a component is made by add_library()" if is_component else ""
     message = f"no source of the program {target.name!r} has a main(), so it does not link{advice}"
-    yield CodeFault("no main", message, compiled.at)
+    yield CodeFault("program-main", message, compiled.at)
 
 
 def _without_init(compiled: CompiledTarget) -> Iterator[CodeFault]:
@@ -78,9 +78,9 @@ def _without_init(compiled: CompiledTarget) -> Iterator[CodeFault]:
     message = "main() calls no rclcpp::init(), so the node is not made: the context is not valid"
     for call in unit.calls_in(main):
         if call.kind == "call_expression" and "rclcpp" in called_name(call):
-            yield CodeFault("no rclcpp::init", message, call.location)
+            yield CodeFault("rclcpp-init", message, call.location)
             return
-    yield CodeFault("no rclcpp::init", message, main.node.location)
+    yield CodeFault("rclcpp-init", message, main.node.location)
 
 
 def _is_known_library(name: str) -> bool:
@@ -102,7 +102,7 @@ def _components_without_constructor(unit: CppUnit) -> Iterator[CodeFault]:
                     f"the component {plain(name)!r} has no constructor that takes "
                     f"rclcpp::NodeOptions, so it does not compile"
                 )
-                yield CodeFault("no constructor", message, classes[0].node.location, at)
+                yield CodeFault("component-constructor", message, classes[0].node.location, at)
 
 
 def _takes_options(unit: CppUnit, each: CppClass, depth: int) -> bool | None:

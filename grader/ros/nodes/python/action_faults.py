@@ -52,7 +52,7 @@ def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Ite
         )
         at = location_in(code.source, position_of(function))
         place = location_in(code.source, position_of(goal.call))
-        yield CodeFault("no goal state", message, at, place, is_certain=False)
+        yield CodeFault("goal-state", message, at, place, is_certain=False)
 
 
 def rejected_goals(code: Code, registered: Sequence[RegisteredGoal]) -> Iterator[CodeFault]:
@@ -76,7 +76,7 @@ def rejected_goals(code: Code, registered: Sequence[RegisteredGoal]) -> Iterator
             )
             at = location_in(code.source, position_of(function))
             place = location_in(code.source, position_of(goal.call))
-            yield CodeFault("rejects goals", message, at, place, is_certain=False)
+            yield CodeFault("goal-state", message, at, place, is_certain=False)
 
 
 def _is_rejection(answer: ast.expr | None) -> bool:
@@ -203,7 +203,7 @@ def loops_without_transforms(
                 )
                 at = location_in(code.source, position_of(node))
                 place = location_in(code.source, position_of(goal.call))
-                yield CodeFault("waits in a callback", message, at, place, is_certain=False)
+                yield CodeFault("callback-wait", message, at, place, is_certain=False)
                 break
 
 
@@ -282,7 +282,7 @@ def _wrong_fields(code: Code, function: _Function) -> Iterator[CodeFault]:
                         f"{names[0]}.result().result"
                     )
                     at = location_in(code.source, position_of(node))
-                    yield CodeFault("no result", message, at)
+                    yield CodeFault("action-result", message, at)
 
 
 def _is_answer(node: ast.expr, answers: set[str]) -> bool:
@@ -306,7 +306,9 @@ def buffers_without_listener(code: Code, names: Mapping[str, str]) -> Iterator[C
     for name, calls in made.items():
         if len(calls) == 1 and _is_only_asked(name, code):
             message = f"no TransformListener fills {name}: it never has a transform"
-            yield CodeFault("no listener", message, location_in(code.source, position_of(calls[0])))
+            yield CodeFault(
+                "buffer-listener", message, location_in(code.source, position_of(calls[0]))
+            )
 
 
 def _is_only_asked(name: str, code: Code) -> bool:

@@ -163,7 +163,7 @@ def _faults_of(
         message = f"{name} takes {taken}, but a callback of {called}() is called with {gets}"
         at = location_in(code.source, position_of(function))
         yield CodeFault(
-            "callback parameters", message, at, location_in(code.source, position_of(call))
+            "callback-parameters", message, at, location_in(code.source, position_of(call))
         )
 
 

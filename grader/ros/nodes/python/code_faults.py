@@ -220,7 +220,7 @@ def _wrong_calls(
             count += 1
             if count <= _MAX_FAULTS:
                 at = location_in(module.code.source, position_of(call))
-                yield CodeFault("wrong call", reactions[call], at)
+                yield CodeFault("call-arguments", reactions[call], at)
 
 
 def _other_names(function: ast.AST) -> Mapping[str, ast.expr]:
@@ -283,7 +283,7 @@ def _undefined_names(code: Code) -> Iterator[CodeFault]:
         if type(message).__name__ in _CERTAIN and at not in unevaluated and text not in said:
             said.add(text)
             if len(said) <= _MAX_FAULTS:
-                yield CodeFault("undefined name", text, location_in(code.source, at))
+                yield CodeFault("name-binding", text, location_in(code.source, at))
 
 
 def _unevaluated(tree: ast.Module) -> set[Position]:
@@ -409,7 +409,7 @@ class _Search:
         fixes = NO_FIXES
         if is_sure and meant is not None:
             fixes = self._rewrite(start, end, meant)
-        return CodeFault("undefined name", message, self._code.source.at(start), fixes=fixes)
+        return CodeFault("name-binding", message, self._code.source.at(start), fixes=fixes)
 
     # --- Callbacks
 
@@ -434,7 +434,7 @@ class _Search:
             if not (registered.given.args or registered.given.keywords):
                 start = self._code.source.offset(at.line, at.column)
                 fixes = self._rewrite(start, self._end(registered.given), name)
-            yield CodeFault("callback is called", message, at, fixes=fixes)
+            yield CodeFault("callback-call", message, at, fixes=fixes)
 
     def wrong_parameters(self) -> Iterator[CodeFault]:
         """Yield callbacks that cannot take what they are called with."""
@@ -491,7 +491,9 @@ class _Search:
                     if not is_certain:
                         message = f"{message} on every path"
                 at = self._at(node)
-                yield CodeFault("no response", message, at, self._at(registered.call), is_certain)
+                yield CodeFault(
+                    "service-response", message, at, self._at(registered.call), is_certain
+                )
 
     def _wrong_responses(
         self, function: ast.FunctionDef | ast.AsyncFunctionDef, registered: _Registered
@@ -507,7 +509,7 @@ class _Search:
                     "refuses with a TypeError"
                 )
                 at, related = self._at(statement), self._at(registered.call)
-                yield CodeFault("no response", message, at, related)
+                yield CodeFault("service-response", message, at, related)
 
     def waiting_callbacks(self) -> Iterator[CodeFault]:
         """Yield what callbacks wait for while nothing else can run.
@@ -557,7 +559,7 @@ class _Search:
                     f"the loop in the callback {function.name}() waits for ever for "
                     f"{enumerated(awaited, word='or')}: no other callback runs until it ends"
                 )
-                yield CodeFault("waits in a callback", message, self._at(node), is_certain=False)
+                yield CodeFault("callback-wait", message, self._at(node), is_certain=False)
 
     def _are_set_elsewhere(
         self, names: Collection[str], function: ast.FunctionDef | ast.AsyncFunctionDef
@@ -612,7 +614,7 @@ class _Search:
         message = (
             f"while time.sleep() in the callback {function.name}() waits, no other callback runs"
         )
-        yield CodeFault("sleeps in a callback", message, at, is_certain=False)
+        yield CodeFault("callback-sleep", message, at, is_certain=False)
 
     def _waiting(
         self, call: ast.Call, name: str, clients: Collection[str], rates: Collection[str]
@@ -626,19 +628,19 @@ class _Search:
                 f"{called}() in the callback {name}() waits for ever: the answer is only read "
                 "when the callback has ended; use call_async()"
             )
-            yield CodeFault("waits in a callback", message, self._at(call))
+            yield CodeFault("callback-wait", message, self._at(call))
         elif method == "sleep" and owner in rates:
             message = (
                 f"{called}() in the callback {name}() waits for ever: the timer of a rate only "
                 "runs when the callback has ended"
             )
-            yield CodeFault("waits in a callback", message, self._at(call))
+            yield CodeFault("callback-wait", message, self._at(call))
         elif called == _SPINNING and [*map(dotted, call.args[:1])] == ["self"]:
             message = (
                 f"spin_until_future_complete() in the callback {name}() waits for ever: the "
                 "answer is only read when the callback has ended; use add_done_callback()"
             )
-            yield CodeFault("waits in a callback", message, self._at(call))
+            yield CodeFault("callback-wait", message, self._at(call))
 
     def _reached(self) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
         """Yield the callbacks of timers, subscriptions and services, and own methods they call."""
@@ -735,7 +737,7 @@ class _Search:
             yield from self._unspun(init, reached)
         if spin is not None and not self._is_initialised(names):
             message = "rclpy.init() is missing, so rclpy makes no node"
-            yield CodeFault("no rclpy.init", message, self._at(spin))
+            yield CodeFault("rclpy-init", message, self._at(spin))
 
     def _unspun(self, init: ast.Call, reached: Sequence[ModuleText]) -> Iterator[CodeFault]:
         """Yield that nothing spins a node with callbacks, or that it is spun once."""
@@ -749,7 +751,7 @@ class _Search:
                 "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
             )
             is_certain = not self._may_work_in_loops(reached)
-            yield CodeFault("nothing spins", message, self._at(init), is_certain=is_certain)
+            yield CodeFault("node-spins", message, self._at(init), is_certain=is_certain)
 
     def _certainly_registers(self, init: ast.Call) -> bool:
         """Return whether a node that functions of the module make certainly has a callback.
@@ -824,7 +826,7 @@ class _Search:
                 "write rclpy.spin(node)"
             )
             is_certain = self._has_several_callbacks()
-            yield CodeFault("nothing spins", message, self._at(call), None, is_certain)
+            yield CodeFault("node-spins", message, self._at(call), None, is_certain)
 
     def _calls_run_once(self) -> Iterator[ast.Call]:
         """Yield the calls that run once at most, as the functions are that have them.

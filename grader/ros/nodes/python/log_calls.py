@@ -35,7 +35,9 @@ def wrong_log_calls(code: Code, parts: Sequence[CodePart]) -> Iterator[CodeFault
         certain = set(certain_nodes(part.node)) if wrong else set[ast.AST]()
         for call, reason in wrong.items():
             if call in certain:
-                yield CodeFault("wrong call", reason, location_in(code.source, position_of(call)))
+                yield CodeFault(
+                    "call-arguments", reason, location_in(code.source, position_of(call))
+                )
 
 
 def _reason(call: ast.Call, *, is_other: bool) -> str:

@@ -18,7 +18,7 @@ def wrong_imports(code: Code) -> Iterator[CodeFault]:
             message = _why_wrong(statement.module, [name.name for name in statement.names])
             if message:
                 at = location_in(code.source, position_of(statement))
-                yield CodeFault("undefined name", message, at)
+                yield CodeFault("name-binding", message, at)
                 return
 
 

@@ -50,7 +50,7 @@ def early_uses(
                 "Python raises an AttributeError; call super().__init__() first"
             )
             yield CodeFault(
-                "used too early", message, location_in(code.source, position_of(called))
+                "constructor-order", message, location_in(code.source, position_of(called))
             )
             return
 

@@ -36,7 +36,9 @@ def parameters_as_values(code: Code, nodes: Collection[ast.ClassDef]) -> Iterato
                     "get_parameter() returns a Parameter, with which Python cannot compute: write "
                     ".value behind it"
                 )
-                yield CodeFault("wrong call", message, location_in(code.source, position_of(used)))
+                yield CodeFault(
+                    "call-arguments", message, location_in(code.source, position_of(used))
+                )
                 break
 
 
