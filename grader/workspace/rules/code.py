@@ -575,7 +575,7 @@ def code_facts(workspace: Workspace) -> Iterator[Fact]:
                     yield Mismatch(_CODE_SYNTAX, message, at, fixes=fixes)
                 else:
                     message = f"the file is not read: {program.syntax.message}"
-                    yield warning(CODE_SYNTAX, message, at)
+                    yield warning(_CODE_SYNTAX, message, at)
                     yield Undecided("code", f"{at.path} is not read")
         for node in nodes.nodes:
             workspace.charge(1 + len(node.endpoints))
