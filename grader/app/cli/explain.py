@@ -7,7 +7,6 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
-from grader.app.cli.completion import offer_explained
 from grader.app.cli.options import RubricOption
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
 
@@ -18,7 +17,8 @@ def explain(
     name: Annotated[
         str,
         typer.Argument(
-            metavar="CODE|CHECK|CRITERION|PARAMETER", help=_NAME, autocompletion=offer_explained
+            metavar="CODE|CHECK|CRITERION|PARAMETER",
+            help=_NAME,
         ),
     ],
     rubric: RubricOption = DEFAULT_RUBRIC,

@@ -4,7 +4,6 @@ from typing import Annotated
 
 import typer
 
-from grader.app.cli.completion import offer_codes
 from grader.app.cli.options import ArgOption, MaxSizeOption, SaveOption
 from grader.app.cli.streams import TERMINAL, pass_on
 from grader.files.reading import URDF_LIMIT
@@ -46,12 +45,8 @@ def inspect(
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
     watch: Annotated[bool, typer.Option("--watch", help=_WATCH)] = False,
-    select: Annotated[
-        list[str] | None, typer.Option(metavar="CODE", help=_SELECT, autocompletion=offer_codes)
-    ] = None,
-    ignore: Annotated[
-        list[str] | None, typer.Option(metavar="CODE", help=_IGNORE, autocompletion=offer_codes)
-    ] = None,
+    select: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_SELECT)] = None,
+    ignore: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_IGNORE)] = None,
     baseline: Annotated[str | None, typer.Option(metavar="FILE", help=_BASELINE)] = None,
     write_baseline: Annotated[
         str | None, typer.Option(metavar="FILE", help=_WRITE_BASELINE)

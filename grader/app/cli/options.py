@@ -6,7 +6,6 @@ from typing import Annotated, Any
 
 import typer
 
-from grader.app.cli.completion import offer_parts, offer_rubrics
 from grader.base.errors import InputError
 from grader.base.text import enumerated, printable_path
 from grader.report.formats import OutputFormat
@@ -17,7 +16,6 @@ PartOption = Annotated[
         "--part",
         metavar="ID",
         help="Grade only this part; repeatable.",
-        autocompletion=offer_parts,
     ),
 ]
 RUBRIC_VARIABLE = "GRADER_RUBRIC"
@@ -30,7 +28,6 @@ def rubric_option(text: str, *, shows_default: bool = False) -> Any:
         envvar=RUBRIC_VARIABLE,
         help=text,
         show_default=shows_default,
-        autocompletion=offer_rubrics,
     )
 
 

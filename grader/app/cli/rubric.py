@@ -8,7 +8,6 @@ from typing import Annotated, Literal
 
 import typer
 
-from grader.app.cli.completion import offer_rubrics
 from grader.app.cli.options import AnswersOption, FormatOption, RubricOption
 from grader.app.cli.streams import TERMINAL, warn
 from grader.app.commands import rubrics
@@ -44,7 +43,8 @@ rubric = typer.Typer(help=_HELP, no_args_is_help=True)
 RubricArgument = Annotated[
     str,
     typer.Argument(
-        metavar="ID|FILE", help="The rubric: an id or a .toml file.", autocompletion=offer_rubrics
+        metavar="ID|FILE",
+        help="The rubric: an id or a .toml file.",
     ),
 ]
 
@@ -142,7 +142,7 @@ def new_rubric(
 def copy_rubric(
     name: Annotated[
         str,
-        typer.Argument(metavar="ID", help="A rubric of the grader.", autocompletion=offer_rubrics),
+        typer.Argument(metavar="ID", help="A rubric of the grader."),
     ],
     folder: Annotated[
         Path, typer.Argument(metavar="FOLDER", help="The folder to write into: FOLDER/ID.")

@@ -241,29 +241,20 @@ def _correct_command(line: _CommandLine) -> _Correction | None:
     return _Correction(f"there is no command {word!r}", words)
 
 
-def _is_of_rubrics(line: _CommandLine, word: str, rest: list[str]) -> bool:
-    """Return whether a word is a command on rubrics, and the words after it are rubrics, if any."""
-    if word not in line.root.commands["rubric"].commands:
-        return False
-    if any(other in shipped_rubrics() or other.endswith(".toml") for other in rest):
-        return True
-    return not rest and word not in _COMMANDS
-
-
 def _with_command(line: _CommandLine, word: str, rest: list[str]) -> list[str] | None:
     """Return the words with a command in place of a word that is none."""
     groups, above = line.command.commands, line.words[: line.start]
+    if word == "grader":
+        return rest
     later = [other for other in rest if other in groups]
-    if word == "grader" or (word == "help" and later):
-        return rest if word == "grader" else [*rest, "--help"]
     if later:
         rest.remove(later[0])
-        return [*above, later[0], word, *rest]
+        return [*above, later[0], "--help" if word == "help" else word, *rest]
     if _is_submission(word) or (word.startswith("-") and any(map(_is_submission, rest))):
         return ["grade", word, *rest]
-    if word in shipped_rubrics():
-        return ["rubric", "show", word, *rest] if above else ["grade", *rest, "--rubric", word]
-    if _is_of_rubrics(line, word, rest):
+    names_rubric = any(other in shipped_rubrics() or other.endswith(".toml") for other in rest)
+    is_of_rubric = word not in _COMMANDS or names_rubric
+    if word in line.root.commands["rubric"].commands and is_of_rubric:
         return ["rubric", word, *rest]
     lower = word.lower()
     meant = lower if lower in groups else _COMMANDS.get(lower) or closest(lower, groups)
