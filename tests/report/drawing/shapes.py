@@ -50,9 +50,9 @@ def surface(shape: Shape) -> Points:
             for z in levels[[0, -1]]
         ]
         return np.concatenate(side + caps)
-    polar, turn = np.meshgrid(np.linspace(0.0, pi, 121), turn)
+    polar, around = np.meshgrid(np.linspace(0.0, pi, 121), turn)
     flat = np.sin(polar)
-    ball = np.stack([flat * np.cos(turn), flat * np.sin(turn), np.cos(polar)], axis=-1)
+    ball = np.stack([flat * np.cos(around), flat * np.sin(around), np.cos(polar)], axis=-1)
     return shape.radius * ball.reshape(-1, 3)
 
 
