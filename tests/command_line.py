@@ -2,6 +2,7 @@
 
 import gc
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -24,6 +25,8 @@ HANG_TIMEOUT = 300.0  # seconds after which a command counts as hanging, even on
 
 GRADER = (sys.executable, "-W", "error", "-m", "grader")
 Done = subprocess.CompletedProcess[bytes]
+# A line every ten seconds on standard error, of what takes longer on a busy machine.
+PROGRESS = re.compile(r"^grader: \d+ of \d+(, .* left.*)?\n", re.MULTILINE)
 
 # What starts processes or threads that would outlive the command here, and variables that the interpreter reads when it starts.
 _OWN_PROCESS = ("--cluster",)

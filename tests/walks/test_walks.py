@@ -4,7 +4,6 @@
 """
 
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +11,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment
+from tests.command_line import HANG_TIMEOUT, PROGRESS, ROOT, clean_environment
 from tests.tutorial import follow
 from tests.wheels import offline
 
@@ -23,8 +22,6 @@ NO_NETWORK = {
     f"{scheme}_proxy": "http://127.0.0.1:9" for scheme in ("http", "https")
 }  # no program listens there
 NO_NETWORK["no_proxy"] = "127.0.0.1"  # the pages of the grader itself
-# A line every ten seconds, of what takes longer on a busy machine.
-_PROGRESS = re.compile(r"^grader: \d+ of \d+(, .* left.*)?\n", re.MULTILINE)
 
 
 class Walk:
@@ -62,7 +59,7 @@ class Walk:
                 check=False,
                 timeout=HANG_TIMEOUT,
             )
-            shown = _PROGRESS.sub("", done.stdout)
+            shown = PROGRESS.sub("", done.stdout)
             printed, code = printed + shown, done.returncode
             assert line.startswith("grader ") or code == 0, (line, printed)
         return printed, code

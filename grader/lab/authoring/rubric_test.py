@@ -592,6 +592,8 @@ def _counted(
     idle = [criterion.id for criterion in trial.tested if criterion.id not in failed]
     is_interrupted = rest is None
     equivalents, unexamined, files = rest or _Rest([], [], 0)
+    names = [loss.name for loss in equivalents]
+    losses = [loss for loss in equivalents if loss.criteria]
     return RubricTest(
         reference=trial.report,
         total=len(every),
@@ -606,8 +608,8 @@ def _counted(
         files=files,
         faults=tuple(unjudged["faulty"]),
         over_budget=tuple(unjudged["over budget"]),
-        equivalents=tuple(loss.name for loss in equivalents),
-        losses=tuple(loss for loss in equivalents if loss.criteria),
+        equivalents=tuple(names),
+        losses=tuple(losses),
         samples=samples,
         kinds=tuple(scores_by_kind(scored)),
         is_interrupted=is_interrupted,
