@@ -5,10 +5,11 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from grader.ros.known.releases import Release
+from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.python_calls import ArgumentKind, Written, WrongCall, wrong_call
 from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
 from grader.ros.python.constants import dotted, last_name
-from grader.ros.python.parse import Code, Position, location_in, position_of
+from grader.ros.python.parse import Code
 from grader.ros.python.walking import walk
 
 _PLAIN_NODES = ("rclpy.Node", "rclpy.node.Node")
@@ -74,7 +75,7 @@ class CalledFunctions:
         call: ast.Call,
         owner: ast.ClassDef | None,
         filled: Mapping[str, str],
-        known_kind: Callable[[ast.expr], ArgumentKind | None] = lambda _: None,
+        known_kind: Callable[[ast.expr], ArgumentKind | None],
     ) -> WrongCall | None:
         """Return what is wrong with the arguments of a call in a method of a node's class.
 
@@ -88,7 +89,8 @@ class CalledFunctions:
         def kind_of(argument: ast.expr) -> ArgumentKind | None:
             return known_kind(argument) or self._kind_of(owner, argument)
 
-        written = Written(call, self._code.source, self._span, kind_of, filled)
+        source = self._code.source
+        written = Written(call, source, CodeEdits(source).span, kind_of, filled)
         return wrong_call(written, called, self._releases)
 
     def _called_function(self, call: ast.Call, owner: ast.ClassDef | None) -> str | None:
@@ -179,20 +181,10 @@ class CalledFunctions:
             parts.pop()
         return len(parts) > 2 and parts[-2] in ("msg", "srv", "action") and parts[-1][0].isupper()
 
-    def _span(self, node: ast.AST) -> tuple[int, int]:
-        assert isinstance(node, ast.expr | ast.keyword)
-        start = position_of(node)
-        end = Position(node.end_lineno or node.lineno, (node.end_col_offset or 0) + 1)
-        return self._offset(start), self._offset(end)
 
-    def _offset(self, position: Position) -> int:
-        location = location_in(self._code.source, position)
-        return self._code.source.offset(location.line, location.column)
-
-
-def made_in(statements: Iterable[ast.stmt]) -> Iterator[tuple[str, str]]:
-    """Yield the variables and attributes that statements bind, with what their calls make."""
-    for target, calls in _calls_bound(statements).items():
+def made_in(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, str]]:
+    """Yield the variables and attributes that nodes bind, with what their calls make."""
+    for target, calls in _calls_bound(nodes).items():
         yield from ((target, dotted(call.func)) for call in calls)
 
 

@@ -44,7 +44,7 @@ def early_uses(
     for statement in _statements_before(constructor):
         called = _first_need(statement, owner, known)
         if called is not None:
-            when = "called later" if _initialises(constructor) else "not called"
+            when = "called later" if initialises(constructor) else "not called"
             message = (
                 f"{dotted(called.func)}() needs what super().__init__() makes, which is {when}: "
                 "Python raises an AttributeError; call super().__init__() first"
@@ -55,6 +55,19 @@ def early_uses(
             return
 
 
+def missing_init(
+    code: Code, owner: ast.ClassDef, is_base: Callable[[str], bool]
+) -> Iterator[CodeFault]:
+    """Yield that nothing initialises the node that a class is, which is spun."""
+    constructor = methods_of(owner).get("__init__")
+    if constructor is None or initialises(constructor):
+        return
+    if not _is_made_elsewhere(owner, constructor, is_base):
+        message = f"super().__init__() is missing in the class {owner.name}, so it is no node"
+        at = location_in(code.source, position_of(constructor))
+        yield CodeFault("constructor-order", message, at)
+
+
 def _is_made_elsewhere(
     owner: ast.ClassDef,
     constructor: ast.FunctionDef | ast.AsyncFunctionDef,
@@ -62,9 +75,9 @@ def _is_made_elsewhere(
 ) -> bool:
     """Return whether something besides a constructor may make the node."""
     others = [method for method in methods_of(owner).values() if method is not constructor]
-    if any(map(_initialises, others)):
+    if any(map(initialises, others)):
         return True
-    return not _initialises(constructor) and (
+    return not initialises(constructor) and (
         is_base(owner.name) or _may_be_made(owner, constructor)
     )
 
@@ -72,7 +85,7 @@ def _is_made_elsewhere(
 def _statements_before(constructor: ast.FunctionDef | ast.AsyncFunctionDef) -> list[ast.stmt]:
     """Return the statements before that with super().__init__(); all where there is none."""
     for position, statement in enumerate(constructor.body):
-        if _initialises(statement):
+        if initialises(statement):
             return constructor.body[:position]
     return constructor.body
 
@@ -91,7 +104,7 @@ def _may_be_made(owner: ast.ClassDef, constructor: ast.FunctionDef | ast.AsyncFu
     return False
 
 
-def _initialises(node: ast.AST) -> bool:
+def initialises(node: ast.AST) -> bool:
     """Return whether code may call the constructor of a base class."""
     return any(isinstance(part, ast.Attribute) and part.attr == "__init__" for part in walk(node))
 
