@@ -45,9 +45,10 @@ class Position(NamedTuple):
 START = Position(1, 1)
 
 
-def position_of(
-    node: ast.expr | ast.stmt | ast.excepthandler | ast.alias | ast.keyword,
-) -> Position:
+_Placed = ast.expr | ast.stmt | ast.excepthandler | ast.alias | ast.keyword
+
+
+def position_of(node: _Placed) -> Position:
     """Return the position of a node."""
     return Position(node.lineno, node.col_offset + 1)
 
@@ -61,6 +62,12 @@ class Code(NamedTuple):
     source: Source
     tree: ast.Module
     conflict: tuple[str, Position] | None = None  # of git, without which it was parsed
+
+    def at(
+        self, node: ast.expr | ast.stmt | ast.excepthandler | ast.alias | ast.keyword
+    ) -> Location:
+        """Return the location of a node."""
+        return location_in(self.source, position_of(node))
 
 
 @lru_cache(maxsize=4)  # the readers of a module follow each other

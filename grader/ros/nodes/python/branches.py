@@ -19,19 +19,13 @@ def calls_in_branches(tree: ast.Module) -> frozenset[ast.Call]:
         node, is_inside = pending.pop()
         if is_inside and isinstance(node, ast.Call):
             calls.append(node)
-        if isinstance(node, _BRANCHES) and not _asks_for_program(node):
+        if isinstance(node, _BRANCHES) and not program_name(getattr(node, "test", None)):
             is_inside = True
         pending += [(child, is_inside) for child in children(node)]
     return frozenset(calls)
 
 
-def _asks_for_program(node: ast.AST) -> bool:
-    test = getattr(node, "test", None)
-    left = test.left if isinstance(test, ast.Compare) else None
-    return isinstance(left, ast.Name) and left.id == "__name__"
-
-
-def program_name(test: ast.expr) -> str:
+def program_name(test: ast.expr | None) -> str:
     """Return the text that a condition compares __name__ with; empty for another condition."""
     match test:
         case ast.Compare(

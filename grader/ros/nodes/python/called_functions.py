@@ -8,6 +8,7 @@ from grader.ros.known.releases import Release
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.python_calls import ArgumentKind, Written, WrongCall, wrong_call
 from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
+from grader.ros.python.bindings import names_bound
 from grader.ros.python.constants import dotted, last_name
 from grader.ros.python.parse import Code
 from grader.ros.python.walking import walk
@@ -33,12 +34,11 @@ class CalledFunctions:
         self,
         code: Code,
         nodes: Sequence[ast.AST],
-        imports: Mapping[str, str],
         releases: Sequence[Release],
     ) -> None:
-        """Search in the nodes of the code; `imports` has the full names of what it imports."""
+        """Search in the nodes of the code."""
         self._code, self._releases = code, releases
-        self._stored = _count_bound(nodes)
+        self._stored = count_bound(nodes)
         self._rebound, self._defined = {*self._stored}, set[str]()
         self._bound_in: dict[ast.ClassDef, set[str]] = {}  # the names that bodies of classes bind
         self._named: dict[str, list[ast.ClassDef]] = {}  # the classes of each name
@@ -47,6 +47,7 @@ class CalledFunctions:
             self._add(node)
         rebound = self._rebound | self._defined | _names_of_several_imports(nodes)
         # The names that the module certainly imports, and does not bind to anything else.
+        imports = imported_names(nodes)
         self._imports = {name: full for name, full in imports.items() if name not in rebound}
         self._lost = rebound
         self._made = _calls_bound(nodes)
@@ -61,10 +62,7 @@ class CalledFunctions:
             self._add_class(node)
 
     def _add_class(self, owner: ast.ClassDef) -> None:
-        bound: set[str] = set()
-        for statement in owner.body:
-            bound.update(names_bound_by(statement))
-        self._bound_in[owner] = bound
+        self._bound_in[owner] = set[str]().union(*map(names_bound_by, owner.body))
         self._named.setdefault(owner.name, []).append(owner)
         for node in walk(owner):
             if isinstance(node, ast.Call):
@@ -207,7 +205,7 @@ def _names_of_several_imports(nodes: Iterable[ast.AST]) -> set[str]:
     return {name for name, full_names in names.items() if len(full_names) > 1}
 
 
-def _count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
+def count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
     """Return how often a variable or an attribute is bound."""
     bound: Counter[str] = Counter()
     for node in nodes:
@@ -216,17 +214,11 @@ def _count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
     return bound
 
 
-def names_bound_by(node: ast.stmt) -> Iterator[str]:
-    """Yield the names that a statement in the body of a class binds."""
+def names_bound_by(node: ast.stmt) -> set[str]:
+    """Return the names that a statement in the body of a class binds."""
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-        yield node.name
-        return
-    for part in walk(node):
-        match part:
-            case ast.Name(id=name, ctx=ast.Store()) | ast.FunctionDef(name=name):
-                yield name
-            case ast.alias(name=full, asname=asname):
-                yield asname or full.partition(".")[0]
+        return {node.name}
+    return names_bound(walk(node))
 
 
 def methods_of(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:

@@ -36,6 +36,7 @@ from grader.ros.nodes.python.callback_parameters import (
 )
 from grader.ros.nodes.python.called_functions import (
     CalledFunctions,
+    count_bound,
     imported_names,
     made_in,
     methods_of,
@@ -50,7 +51,7 @@ from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_pass
 from grader.ros.nodes.python.undefined_names import undefined_names
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import binds_unseen, constant_in, dotted, last_name
-from grader.ros.python.parse import Code, every_node, location_in, position_of
+from grader.ros.python.parse import Code, every_node, position_of
 from grader.ros.python.values import QualifiedName
 from grader.ros.python.walking import children, walk
 
@@ -207,19 +208,17 @@ def _early_uses(
     edits: CodeEdits,
 ) -> Iterator[CodeFault]:
     """Yield what constructors of nodes use before the node is made."""
-
-    def is_base(name: str) -> bool:
-        modules = (module, *others.values())
-        classes = [owner for other in modules for owner in other.classes.values()]
-        return any(name == last_name(base) for owner in classes for base in owner.bases)
-
+    bases = set[str]()
+    for other in (module, *others.values()):
+        for owner in other.classes.values():
+            bases.update(map(last_name, owner.bases))
     spun = _find_spun(module)
     for owner in module.nodes.values() if not attributes.may_be_more else ():
         if len(owner.bases) != 1 or owner.keywords:
             continue
-        early = [*early_uses(module.code, owner, attributes.stored, is_base)]
+        early = [*early_uses(module.code, owner, attributes.stored, bases)]
         if not early and owner.name in spun:
-            early = [*missing_init(module.code, owner, is_base)]
+            early = [*missing_init(module.code, owner, bases)]
         constructor = methods_of(owner).get("__init__")
         fixes = NO_FIXES
         if constructor is not None and not initialises(constructor):
@@ -248,7 +247,7 @@ def _wrong_calls(
     nodes = every_node(module.code.tree)
     if binds_unseen(nodes):
         return
-    functions = CalledFunctions(module.code, nodes, imported_names(nodes), releases)
+    functions = CalledFunctions(module.code, nodes, releases)
     classes = {*NODE_CLASSES}
     for other in others.values():
         classes.update(f"{other.name}.{node.name}" for node in other.nodes.values())
@@ -273,7 +272,7 @@ def _wrong_calls(
         certain = set(certain_nodes(part.node)) if wrong else set[ast.AST]()
         said = [call for call in wrong if call in certain]
         for call in sorted(said, key=position_of):
-            at = location_in(module.code.source, position_of(call))
+            at = module.code.at(call)
             yield CodeFault("call-arguments", wrong[call].reaction, at, fixes=wrong[call].fixes)
 
 
@@ -353,7 +352,7 @@ class _Search:
                         yield _Registered(name, call, given, part)
 
     def _at(self, node: ast.expr | ast.stmt) -> Location:
-        return location_in(self._code.source, position_of(node))
+        return self._code.at(node)
 
     def _function(
         self, node: ast.expr, part: CodePart
@@ -537,11 +536,7 @@ class _Search:
 
     def _only_bound(self, made: Sequence[str]) -> set[str]:
         """Return those of some names that the module binds to nothing else."""
-        bound = Counter(
-            getattr(node, "attr", getattr(node, "id", ""))
-            for node in (every_node(self._code.tree) if made else ())
-            if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
-        )
+        bound = count_bound(every_node(self._code.tree) if made else ())
         return {name for name in made if bound[name.rpartition(".")[2]] == made.count(name)}
 
     def _loops(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[CodeFault]:
@@ -773,8 +768,9 @@ class _Search:
         """Yield that a file that is a program defines main(), and calls nothing."""
         tree, text = self._code.tree, self._code.source.text
         main = next((node for node in tree.body if getattr(node, "name", "") == "main"), None)
-        is_function = isinstance(main, ast.FunctionDef) and self._module.is_script
-        if not isinstance(main, ast.FunctionDef) or not is_function or any(map(_acts, tree.body)):
+        if not isinstance(main, ast.FunctionDef) or not self._module.is_script:
+            return
+        if any(map(_acts, tree.body)) or self._is_imported_script():
             return
         message = "main() is never called, so the program does nothing"
         space = "\n\n" if text.endswith("\n") else "\n\n\n"
@@ -899,6 +895,14 @@ class _Search:
             return True
         return self._is_imported()
 
+    def _is_imported_script(self) -> bool:
+        """Return whether another script may import this one, which is beside it."""
+        names = set[str]()
+        for other in self._others.values():
+            for imported in other.imports:
+                names.update(imported.split("."))
+        return PurePosixPath(self._module.name).stem in names
+
     def _is_imported(self) -> bool:
         name = self._module.name
         others = [other for other in self._others.values() if other.name != name]
@@ -912,21 +916,13 @@ class _Search:
         pending = [self._module]
         while pending:
             for full in pending.pop().imports:
-                names = [full, full.rpartition(".")[0]]
-                own_module = next(
-                    (
-                        self._others[module_name]
-                        for module_name in names
-                        if module_name in self._others
-                    ),
-                    None,
-                )
-                if own_module is not None:
-                    if own_module.name not in reached:
-                        reached[own_module.name] = own_module
-                        pending.append(own_module)
-                elif not is_passive(full):
-                    return None
+                own_module = self._others.get(full) or self._others.get(full.rpartition(".")[0])
+                if own_module is None:
+                    if not is_passive(full):
+                        return None
+                elif own_module.name not in reached:
+                    reached[own_module.name] = own_module
+                    pending.append(own_module)
         return [*reached.values()]
 
 

@@ -11,7 +11,7 @@ from grader.ros.known.releases import Release
 from grader.ros.nodes.node_facts import CodeFault, FieldUse
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.used_fields import resolve_field
-from grader.ros.python.parse import Code, location_in, position_of
+from grader.ros.python.parse import Code
 
 
 def wrong_imports(code: Code) -> Iterator[CodeFault]:
@@ -23,7 +23,7 @@ def wrong_imports(code: Code) -> Iterator[CodeFault]:
         if isinstance(statement, ast.ImportFrom) and statement.module and not statement.level:
             message = _why_wrong(statement.module, [name.name for name in statement.names])
             if message:
-                at = location_in(code.source, position_of(statement))
+                at = code.at(statement)
                 yield CodeFault("name-binding", message, at)
                 return
 

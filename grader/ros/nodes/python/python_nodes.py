@@ -274,7 +274,7 @@ def _joined_nodes(
     modules = searched.modules.values()
     is_loose = any(module.has_loose_declarations for module in modules)
     imports = [type_import for module in modules for type_import in module.type_imports()]
-    uses = [use for module in modules for use in module.field_uses()]
+    uses = [use for module in modules for use in module.field_uses]
     synchronised: list[SynchronisedType] = []
     for module in modules:
         synchronised += module.synchronised_types()
@@ -337,7 +337,7 @@ def _slips_of(package: Package, program: NodeProgram, searched: _Searched) -> Se
     if module is None:
         return python_slips(data, path)
     text = module.text()
-    fields = wrong_fields(text.code.source, module.field_uses(), package.releases)
+    fields = wrong_fields(text.code.source, module.field_uses, package.releases)
     return [*assumed_fixes(text, program.function, [*searched.faults[path], *fields])]
 
 
@@ -430,14 +430,7 @@ def _created_by(
     pending, seen, has_more = [f"{module}.{function}"], set[str](), False
     while pending:
         name = pending.pop(0)
-        owner = next(
-            (
-                modules[module_name]
-                for module_name in (name.rpartition(".")[0], name)
-                if module_name in modules
-            ),
-            None,
-        )
+        owner = modules.get(name.rpartition(".")[0]) or modules.get(name)
         has_more = has_more or (owner is None and _may_be_node_class(name))
         if name in seen or owner is None:
             continue
@@ -511,7 +504,7 @@ class _Module:
                 self._add_class(part, scope)
 
     def _at(self, node: ast.expr | ast.stmt) -> Location:
-        return location_in(self._code.source, position_of(node))
+        return self._code.at(node)
 
     def _add_class(self, node: ast.ClassDef, scope: Scope) -> None:
         """Keep a class and its methods, which reach its constants as attributes of self."""
@@ -641,9 +634,10 @@ class _Module:
         """Yield the messages, services and actions that the module certainly imports."""
         return type_imports(self._code.tree, self._code.source)
 
-    def field_uses(self) -> Iterator[FieldUse]:
-        """Yield the fields that the module uses of messages, services and actions."""
-        return field_uses(self._code, self._parts, self._constants.value_of)
+    @cached_property
+    def field_uses(self) -> Sequence[FieldUse]:
+        """The fields that the module uses of messages, services and actions."""
+        return [*field_uses(self._code, self._parts, self._constants.value_of)]
 
     def _node(
         self,
