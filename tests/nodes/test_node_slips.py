@@ -2,8 +2,8 @@
 
 import pytest
 
-from grader.ros.nodes.python.node_slips import Program, node_slips
-from grader.ros.python.parse import Code, parse
+from grader.base.element_edits import edited
+from tests.nodes.programs import slips_of
 from tests.samples import ROOT
 
 pytestmark = pytest.mark.slow
@@ -13,11 +13,14 @@ SEND = "        command = TwistStamped()\n"
 CREATE = "        self.publisher = self.create_publisher("
 
 
-def reactions(text: str, function: str = "") -> list[str]:
-    """Return what is found in a program, whose corrections leave nothing to be found."""
-    code = parse(text.encode(), "drive_circle.py")
-    assert isinstance(code, Code)
-    slips = node_slips(code, Program("drive_circle.py", function))
+def reactions(text: str, *, is_script: bool = True) -> list[str]:
+    """Return what is found in a program, whose corrections leave nothing to be found, and move no line."""
+    slips = slips_of(text, is_script=is_script)
+    corrected = text
+    for slip in reversed(slips):
+        corrected = edited(corrected, slip.location.path, slip.edits) or ""
+    assert not slips or slips_of(corrected, is_script=is_script) == []
+    assert corrected.count("\n") == text.count("\n") or "main()" in slips[0].reaction
     return [slip.reaction for slip in slips]
 
 
@@ -27,27 +30,39 @@ def reactions(text: str, function: str = "") -> list[str]:
         (
             '        super().__init__("drive_circle")\n',
             "",
-            "super().__init__() is missing in the class DriveCircle",
+            "self.declare_parameter() needs what super().__init__() makes, which is not called",
         ),
         ("command.twist.linear", "command.linear", "geometry_msgs/msg/TwistStamped has no field"),
         ("command.header.stamp", "command.headr.stamp", "geometry_msgs/msg/TwistStamped has no"),
         ("self.publisher.publish", "self.publisher_.publish", "DriveCircle has no attribute pub"),
         ("self.create_publisher", "self.create_publishr", "DriveCircle has no attribute create_p"),
-        ("0.1, self.send", "0.1, self.send()", "create_timer() is given what self.send() returns"),
-        ("    rclpy.init()\n", "", "rclpy.init() is missing, so that rclpy makes no node"),
-        ("rclpy.spin(DriveCircle())", "DriveCircle()", "rclpy.spin() is missing, so that"),
-        ("rclpy.spin(DriveCircle())", "node = DriveCircle()", "rclpy.spin() is missing, so that"),
-        ("import rclpy\n", "", "the name rclpy is not defined"),
-        ("from rclpy.node import Node\n", "", "the name Node is not defined"),
+        (
+            "0.1, self.send",
+            "0.1, self.send()",
+            "create_timer() is given what self.send() returns, which is None",
+        ),
+        ("    rclpy.init()\n", "", "rclpy.init() is missing, so rclpy makes no node"),
+        (
+            "rclpy.spin(DriveCircle())",
+            "DriveCircle()",
+            "nothing spins the node, so none of its callbacks",
+        ),
+        (
+            "rclpy.spin(DriveCircle())",
+            "node = DriveCircle()",
+            "nothing spins the node, so none of its callbacks",
+        ),
+        ("import rclpy\n", "", "undefined name 'rclpy'"),
+        ("from rclpy.node import Node\n", "", "undefined name 'Node'"),
         (
             "from geometry_msgs.msg import TwistStamped\n",
             "",
-            "the name TwistStamped is not defined",
+            "undefined name 'TwistStamped'",
         ),
-        ("= TwistStamped()", "= TwistStampd()", "the name TwistStampd is not defined"),
-        (SEND, f"{SEND}        command.twist.linear.y = math.sin(0)\n", "the name math is not"),
-        ("    main()\n", "    pass\n", "main() is never called, so that the program does nothing"),
-        ('== "__main__"', '== "main"', "main() is never called, so that the program does nothing"),
+        ("= TwistStamped()", "= TwistStampd()", "undefined name 'TwistStampd'"),
+        (SEND, f"{SEND}        command.twist.linear.y = math.sin(0)\n", "undefined name 'math'"),
+        ("    main()\n", "    pass\n", "main() is never called, so the program does nothing"),
+        ('== "__main__"', '== "main"', "main() is never called, so the program does nothing"),
     ],
 )
 def test_what_keeps_a_node_from_running(old: str, new: str, reaction: str) -> None:
@@ -101,7 +116,7 @@ def test_what_does_nothing_for_rclpy(module: str) -> None:
     text = SCRIPT.replace("import rclpy\n", f"import rclpy\nimport {module}\n")
     assert reactions(text) == []
     [found] = reactions(text.replace("rclpy.spin(DriveCircle())", "DriveCircle()"))
-    assert found.startswith("rclpy.spin() is missing")
+    assert found.startswith("nothing spins the node")
 
 
 def test_the_server_of_an_action_calls_its_callback() -> None:
@@ -112,14 +127,17 @@ def test_the_server_of_an_action_calls_its_callback() -> None:
         "import rclpy\n", f"import rclpy\n{imports}"
     )
     [found] = reactions(text)
-    assert found == "ActionServer() is given what self.send() returns, not the function"
+    assert (
+        found
+        == "ActionServer() is given what self.send() returns, which is None; write self.send without the parentheses"
+    )
     assert reactions(text.replace("self.send())\n", "self.send)\n", 1)) == []
 
 
 def test_an_entry_point_calls_its_function() -> None:
     """Then the end of the file does not count, and names in other functions do not."""
     text = SCRIPT.replace("    main()\n", "    pass\n") + "\n\ndef other():\n    math.sin(0)\n"
-    assert reactions(text, "main") == []
+    assert reactions(text, is_script=False) == []
 
 
 def test_a_long_expression_takes_no_stack() -> None:

@@ -281,7 +281,7 @@ def test_what_may_open_more_is_a_doubt(statement: str, doubt: str | None) -> Non
 
 def test_a_node_may_be_made_by_a_function() -> None:
     """rclpy.create_node and Node itself make a node, whose calls are found by the name that it is bound to."""
-    text = f"{_HEAD}def main():\n    n = rclpy.create_node('a')\n    n.create_publisher(Float32, 'x', 10)\n    rclpy.spin(n)\n"
+    text = f"{_HEAD}def main():\n    rclpy.init()\n    n = rclpy.create_node('a')\n    n.create_publisher(Float32, 'x', 10)\n    rclpy.spin(n)\n"
     found = nodes_of(text)
     [node] = found.nodes
     assert (node.class_name, node.name, [it.name for it in node.endpoints], node.doubts) == (
@@ -306,7 +306,9 @@ def test_calls_of_an_unknown_node_are_a_doubt_of_the_package() -> None:
 
 def test_a_method_of_a_variable_starts_no_node_without_a_class() -> None:
     """Only the function that makes such a node has it; others that call methods of a variable have not."""
-    other = f"{_HEAD}def main():\n    n = rclpy.create_node('b')\n    rclpy.spin(n)\n"
+    other = (
+        f"{_HEAD}def main():\n    rclpy.init()\n    n = rclpy.create_node('b')\n    rclpy.spin(n)\n"
+    )
     text = f"{_HEAD}{_CLASS}def main():\n    node = Talker()\n    node.destroy_node()\n"
     programs = nodes_of(text, b=other).programs
     names = {program.name: [node.name for node in program.nodes] for program in programs}

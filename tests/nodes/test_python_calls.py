@@ -7,8 +7,7 @@ import pytest
 from grader.base.element_edits import edited
 from grader.ros.known.package_tables import call_signatures
 from grader.ros.known.releases import Release
-from grader.ros.nodes.python.node_slips import Program, node_slips
-from grader.ros.python.parse import Code, parse
+from tests.nodes.programs import slips_of
 
 SCRIPT = """\
 import rclpy
@@ -143,42 +142,38 @@ RIGHT = [
 ]
 
 
-def slips_of(text: str, releases: Sequence[Release] = ("jazzy",)) -> list[str]:
+def reactions(text: str, releases: Sequence[Release] = ("jazzy",)) -> list[str]:
     """Return what stops a program; with its corrections, nothing does."""
-    code = parse(text.encode(), "talker.py")
-    assert isinstance(code, Code)
-    slips = node_slips(code, Program("talker.py", ""), releases)
-    return [slip.reaction for slip in slips]
+    return [slip.reaction for slip in slips_of(text, releases)]
 
 
 @pytest.mark.parametrize(("old", "new", "reaction"), WRONG)
 def test_a_wrong_call_is_named(old: str, new: str, reaction: str) -> None:
     """It is the only slip, and its correction leaves none."""
     assert old in SCRIPT
-    code = parse(SCRIPT.replace(old, new).encode(), "talker.py")
-    assert isinstance(code, Code)
-    [slip] = node_slips(code, Program("talker.py", ""), ["jazzy"])
+    text = SCRIPT.replace(old, new)
+    [slip] = slips_of(text, ["jazzy"])
     assert slip.reaction.startswith(reaction)
-    corrected = edited(code.source.text, "talker.py", slip.edits)
+    corrected = edited(text, slip.location.path, slip.edits)
     assert corrected is not None
-    assert slips_of(corrected) == []
+    assert reactions(corrected) == []
 
 
 @pytest.mark.parametrize(("old", "new"), RIGHT)
 def test_a_right_or_an_unknown_call_is_none(old: str, new: str) -> None:
     """Names, unpacked arguments, a method of its own and what may not run are no mistakes."""
     assert old in SCRIPT
-    assert slips_of(SCRIPT) == slips_of(SCRIPT.replace(old, new)) == []
+    assert reactions(SCRIPT) == reactions(SCRIPT.replace(old, new)) == []
 
 
 def test_a_release_decides_which_arguments_there_are() -> None:
     """What Humble does not have is wrong only there; a release that nobody read may have more."""
     text = SCRIPT.replace("(0.5, self.tick)", "(0.5, self.tick, autostart=False)")
-    assert slips_of(text) == slips_of(text, ["humble", "jazzy"]) == []
-    assert slips_of(text, ["humble"]) == ["create_timer() has no argument autostart"]
+    assert reactions(text) == reactions(text, ["humble", "jazzy"]) == []
+    assert reactions(text, ["humble"]) == ["create_timer() has no argument autostart"]
     newer = SCRIPT.replace("(0.5, self.tick)", "(0.5, self.tick, delay=1)")
-    assert slips_of(newer, ["jazzy"]) == ["create_timer() has no argument delay"]
-    assert slips_of(newer, ["lyrical"]) == []
+    assert reactions(newer, ["jazzy"]) == ["create_timer() has no argument delay"]
+    assert reactions(newer, ["lyrical"]) == []
 
 
 def test_each_signature_says_which_arguments_are_required() -> None:

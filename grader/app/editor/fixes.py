@@ -59,7 +59,7 @@ def _slips_in(look: Look, path: str) -> Iterator[Slip]:
 def _title(edit: Edit, path: str) -> str:
     """Return what an edit changes, with the place of one in another file than the problem."""
     old, new = (quoted(cut(text.strip(), _MAX_SHOWN)) for text in (edit.old, edit.new))
-    title = f"Change {old} to {new}"
+    title = f"Change {old} to {new}" if edit.old else f"Add {new}"
     if edit.path != path:
         return f"{title} in {edit.path}:{edit.line}"
     return title

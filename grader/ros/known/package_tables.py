@@ -42,7 +42,6 @@ class _PythonTable(NamedTuple):
     """What nodes in Python use."""
 
     node_attributes: frozenset[str]  # public ones of rclpy's nodes
-    messages: Mapping[str, Mapping[str, str]]  # fields, with the types of those that have fields
 
 
 class StartRow(NamedTuple):
@@ -130,7 +129,7 @@ def cpp_table() -> _CppTable:
 
 
 def python_table() -> _PythonTable:
-    """Return what nodes in Python use of rclpy and of messages."""
+    """Return what nodes in Python use of rclpy."""
     return cast("_PythonTable", _table("rclpy", "python"))
 
 

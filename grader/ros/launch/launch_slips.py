@@ -9,7 +9,9 @@ from grader.ros.known.package_files import packages_with_files
 from grader.ros.known.package_rows import lacks_program, package_row, programs_of
 from grader.ros.known.python_names import python_names
 from grader.ros.launch.launch_classes import class_named, exports
-from grader.ros.python.parse import Code, location_in, position_of
+from grader.ros.python.bindings import bound_names
+from grader.ros.python.misspelt_words import read_as
+from grader.ros.python.parse import Code
 from grader.ros.python.walking import walk
 
 _FUNCTION = "generate_launch_description"
@@ -41,20 +43,10 @@ class _LaunchNames:
             self._bind(node)
 
     def _bind(self, node: ast.AST) -> None:
-        match node:
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
-                self._bound.add(name)
-            case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
-                self._bound.add(name)
-            case ast.ExceptHandler(name=str(name)):
-                self._bound.add(name)
-            case ast.ImportFrom(module=str(module), names=names):
-                for alias in names:
-                    name = alias.asname or alias.name
-                    self._bound.add(name)
-                    self._classes[name] = f"{module}.{alias.name}"
-            case ast.Import(names=names):
-                self._bound.update((alias.asname or alias.name).split(".")[0] for alias in names)
+        self._bound.update(bound_names(node))
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for alias in node.names:
+                self._classes[alias.asname or alias.name] = f"{node.module}.{alias.name}"
 
     def found(self) -> Iterator[Slip]:
         """Yield the slips in the order of the file, those of imports first."""
@@ -86,7 +78,9 @@ class _LaunchNames:
                 self._renamed[alias.name] = meant
                 self._bound.add(meant)
                 self._classes[meant] = f"{node.module}.{meant}"
-            yield self._slip(alias, alias.name, meant, f"{node.module} has no {alias.name}")
+            yield read_as(
+                self._code, alias, alias.name, meant, f"{node.module} has no {alias.name}"
+            )
 
     def _of_function(self) -> Iterator[Slip]:
         functions = [node for node in self._code.tree.body if isinstance(node, ast.FunctionDef)]
@@ -95,7 +89,7 @@ class _LaunchNames:
         for node in functions:
             if near(node.name, [_FUNCTION]) is not None:
                 reaction = f"the launch file defines no {_FUNCTION}()"
-                yield self._slip(node, node.name, _FUNCTION, reaction)
+                yield read_as(self._code, node, node.name, _FUNCTION, reaction)
 
     def undefined(self) -> Iterator[Slip]:
         """Yield the names that are used and not defined."""
@@ -110,7 +104,7 @@ class _LaunchNames:
                 continue
             meant = self._renamed.get(name) or _surely(name, self._bound)
             if meant is not None:
-                yield self._slip(node, name, meant, f"the name {name} is not defined")
+                yield read_as(self._code, node, name, meant, f"the name {name} is not defined")
 
     def _of_arguments(self, call: ast.Call, function: str) -> Iterator[Slip]:
         known = class_named(self._full_name(function))
@@ -123,7 +117,9 @@ class _LaunchNames:
                 continue
             meant = _surely(name, known.parameters.keys() - given)
             if meant is not None:
-                yield self._slip(keyword, name, meant, f"{function}() has no argument {name}")
+                yield read_as(
+                    self._code, keyword, name, meant, f"{function}() has no argument {name}"
+                )
 
     def _of_program(self, call: ast.Call) -> Iterator[Slip]:
         """Yield the package or the program of a node near one that ROS 2 has."""
@@ -138,31 +134,17 @@ class _LaunchNames:
             meant = near(program, programs_of(package)) if lacks_program(package, program) else None
             if meant is not None:
                 reaction = f"the package {package} has no program {program!r}"
-                yield self._slip(given["executable"], program, meant, reaction)
+                yield read_as(self._code, given["executable"], program, meant, reaction)
             return
         meant = near(package, packages_with_files())
         if meant is not None and program in programs_of(meant):
             reaction = f"ROS 2 has no package {package!r}"
-            yield self._slip(given["package"], package, meant, reaction)
+            yield read_as(self._code, given["package"], package, meant, reaction)
 
     def _full_name(self, function: str) -> str:
         """Return the full name of an imported class, where it is defined."""
         module, _, name = self._classes.get(function, "").rpartition(".")
         return exports().get(module, {}).get(name, "")
-
-    def _slip(
-        self,
-        node: ast.alias | ast.expr | ast.keyword | ast.FunctionDef,
-        written: str,
-        meant: str,
-        reaction: str,
-    ) -> Slip:
-        source = self._code.source
-        at = location_in(source, position_of(node))
-        start = source.text.find(written, source.offset(at.line, at.column))
-        edit = source.edit(start, start + len(written), meant)
-        location = source.at(start)
-        return Slip((edit,), reaction, f"{written} is read as {meant}", location, is_refused=True)
 
 
 def _surely(name: str, known: Collection[str]) -> str | None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.base.source import Location, Source
-from grader.ros.python.parse import Code, location_in, parse, position_of
+from grader.ros.python.parse import Code, parse
 from grader.ros.python.walking import walk
 
 # A text in braces that a comma follows: only such files are parsed.
@@ -39,7 +39,7 @@ def parameter_sets(source: Source) -> Iterator[_ParameterSet]:
             case ast.keyword(arg="parameters", value=ast.List(elts=items)):
                 for item in items:
                     if isinstance(item, ast.Set) and _is_table(item):
-                        at = location_in(code.source, position_of(item))
+                        at = code.at(item)
                         yield _ParameterSet(ast.unparse(item), at)
 
 

@@ -26,9 +26,7 @@ from grader.ros.python.parse import (
     Code,
     SyntaxFault,
     bound_in,
-    location_in,
     parse,
-    position_of,
 )
 from grader.ros.python.walking import walk
 
@@ -248,7 +246,7 @@ def modules_not_installed(package: Package) -> Iterator[_MissingModule]:
             is_own = any(module.startswith(f"{name}.") for name in setup.packages)
             needed = _package_of_module(package, module) if is_own else None
             if needed is not None and needed not in setup.packages:
-                at = location_in(code.source, position_of(statement))
+                at = code.at(statement)
                 yield _MissingModule(module, needed, at)
 
 
@@ -278,7 +276,7 @@ def modules_beside(package: Package) -> Iterator[_MissingModule]:
             if getattr(statement, "level", 0) or f"{folder}/{top}.py" == path:
                 continue
             if _is_only_beside(package, folder, top):
-                at = location_in(code.source, position_of(statement))
+                at = code.at(statement)
                 yield _MissingModule(top, folder.replace("/", "."), at)
 
 

@@ -53,9 +53,10 @@ class Position(NamedTuple):
 START = Position(1, 1)
 
 
-def position_of(
-    node: ast.expr | ast.stmt | ast.excepthandler | ast.alias | ast.keyword,
-) -> Position:
+_Placed = ast.expr | ast.stmt | ast.excepthandler | ast.alias | ast.keyword
+
+
+def position_of(node: _Placed) -> Position:
     """Return the position of a node."""
     return Position(node.lineno, node.col_offset + 1)
 
@@ -70,6 +71,10 @@ class Code(NamedTuple):
     tree: ast.Module
     conflict: tuple[str, Position] | None = None  # of git, without which it was parsed
     releases: tuple[Release, ...] = ()  # whose Python reads it; none: that of Jazzy
+
+    def at(self, node: _Placed) -> Location:
+        """Return the location of a node."""
+        return location_in(self.source, position_of(node))
 
 
 @lru_cache(maxsize=4)  # the readers of a module follow each other

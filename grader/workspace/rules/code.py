@@ -464,10 +464,10 @@ _PROGRAM_MAIN = Rule(
     "code",
     NO_RUN,
     MAY_WAIT,
-    "The sources of a C++ program have a main().",
+    "A program has a main(), and a script calls it.",
     why=(
         "The linker stops the build with 'undefined reference to main', and no program is "
-        "installed."
+        "installed. A Python script that calls nothing ends at once, without an error."
     ),
     wrong="void talk() {}",
     right="int main() { return 0; }",

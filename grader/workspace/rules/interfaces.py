@@ -4,6 +4,7 @@ Also what generates code of the files, and the fields that nodes use.
 """
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 from grader.base.names import closest, near
 from grader.base.source import Location
@@ -16,18 +17,16 @@ from grader.ros.interfaces.interface_types import (
     FieldType,
     Interface,
     InterfaceField,
-    InterfaceSection,
 )
 from grader.ros.interfaces.known_interfaces import (
-    MORE_CONSTANTS,
     find_change,
     is_open_in,
     known_interfaces,
 )
 from grader.ros.known.cmake_words import cmake_words
 from grader.ros.known.releases import RELEASES, Release
-from grader.ros.nodes.message_uses import ITEM
 from grader.ros.nodes.node_facts import FieldUse
+from grader.ros.nodes.used_fields import FindInterface, UsedField, resolve_field
 from grader.ros.package.package import Package
 from grader.ros.package.package_interfaces import PackageInterfaces
 from grader.ros.python.values import Value
@@ -45,10 +44,8 @@ _IMPLICIT = ("service_msgs", "action_msgs", "builtin_interfaces", "unique_identi
 # What rosidl puts into messages, requests and goals without fields (rosidl_parser,
 # EMPTY_STRUCTURE_REQUIRED_MEMBER_NAME); the classes of Python do not have it.
 _OF_EMPTY = "structure_needs_at_least_one_member"
-_OF_PYTHON = ("get_fields_and_field_types", "SLOT_TYPES")  # besides what begins with _
 # Releases whose setters check the type of what is assigned: rosidl_generator_py of Foxy to Iron.
 _CHECKING = RELEASES[: RELEASES.index("jazzy")]
-_GOAL_HANDLE = "GoalHandle"
 # Types whose lists take bytes, too, or items of several types.
 _OPEN_ITEMS = BOOLEANS | {"byte", "char", "octet", "uint8", "int8"}
 # Releases that have the headers of all packages in one folder, where a compiler finds them.
@@ -360,49 +357,15 @@ def _find_interface(workspace: Workspace, package: str, name: str) -> Interface 
 
 def _used_field(workspace: Workspace, use: FieldUse) -> Iterator[Fact]:
     """Yield that a type has no field that is used, or that it gets a value of another type."""
-    package, kind, name, *sections = use.type.split(".")
-    section_name, path = "".join(sections), use.path
-    if section_name == _GOAL_HANDLE:
-        if path[0] != "request" or len(path) == 1:
-            return
-        section_name, path = "Goal", path[1:]
-    interface = _find_interface(workspace, package, f"{kind}.{name}")
-    section = interface.section(section_name) if interface is not None else None
-    if section is not None:
-        owner = f"{name}.{section_name}" if section_name else name
-        yield from _used_at(workspace, f"{package}/{kind}/{owner}", section, path, use)
-
-
-def _used_at(
-    workspace: Workspace, shown: str, section: InterfaceSection, path: Sequence[str], use: FieldUse
-) -> Iterator[Fact]:
-    """Yield what is wrong with the last name of a path of fields that begins in a section."""
-    attribute, *rest = path
-    field = section.fields.get(attribute)
-    if field is None and not rest:
-        yield from _no_field(workspace, shown, section, attribute, use.location)
-    elif field is not None and not rest:
-        yield from _other_value(workspace, field, shown, use)
-    elif field is not None:
-        if field.type.is_list:
-            rest = rest[1:] if rest[0] == ITEM else []
-        inner_section = _section_of_type(workspace, field.type)
-        if rest and inner_section is not None:
-            shown = f"{field.type.package}/msg/{field.type.name}"
-            yield from _used_at(workspace, shown, inner_section, rest, use)
-
-
-def _section_of_type(workspace: Workspace, kind: FieldType) -> InterfaceSection | None:
-    """Return the fields of the message that a field has, or that its items are."""
-    interface = _find_interface(workspace, kind.package, f"msg.{kind.name}")
-    return interface.section("") if interface is not None else None
-
-
-def _is_of_python(section: InterfaceSection, attribute: str) -> bool:
-    """Return whether the class that rosidl generates has an attribute that is no field."""
-    may_be_constant = MORE_CONSTANTS in section.constants and attribute.isupper()
-    is_known = attribute in section.constants or attribute in _OF_PYTHON or may_be_constant
-    return is_known or attribute.startswith("_") or attribute.endswith("__DEFAULT")
+    find = partial(_find_interface, workspace)
+    used = resolve_field(use, find)
+    if used is None:
+        return
+    field = used.section.fields.get(used.name)
+    if field is not None:
+        yield from _other_value(workspace, field, used.owner, use)
+    elif used.is_absent:
+        yield from _no_field(workspace, used, find, use.location)
 
 
 _INTERFACE_FIELD = Rule(
@@ -430,40 +393,21 @@ self.speeds.publish(speed)
 
 
 def _no_field(
-    workspace: Workspace, shown: str, section: InterfaceSection, attribute: str, at: Location
+    workspace: Workspace, used: UsedField, find: FindInterface, at: Location
 ) -> Iterator[Mismatch]:
-    """Yield that a type does not have a field or a constant that code uses.
-
-    Items of lists, and what the classes of Python have besides, are no fields.
-    """
-    is_of_empty = attribute == _OF_EMPTY and not section.fields and not at.path.endswith(".py")
-    if attribute == ITEM or is_of_empty or _is_of_python(section, attribute):
+    """Yield that a type does not have a field or a constant that code uses."""
+    if used.name == _OF_EMPTY and not used.section.fields and not at.path.endswith(".py"):
         return
-    names, noun = [*section.fields], "field"
-    if attribute.isupper():
-        names, noun = sorted(section.constants), "constant"
-    workspace.charge(len(names))
-    inside = _fields_with(workspace, section, attribute)
-    meant = inside[0] if len(inside) == 1 else near(attribute, names) or closest(attribute, names)
+    workspace.charge(len(used.names))
+    meant = used.find_meant(find)
     if meant is not None:
         hint = f"did you mean {meant}?"
     else:
-        hint = f"it has {enumerated(names[:MAX_NAMED]) or 'none'}"
-        if len(names) > MAX_NAMED:
+        hint = f"it has {enumerated(used.names[:MAX_NAMED]) or 'none'}"
+        if len(used.names) > MAX_NAMED:
             hint = f"{hint} and others"
-    message = f"{shown} has no {noun} {quoted(attribute)}; {hint}"
-    yield Mismatch(_INTERFACE_FIELD, message, at, corrections=corrections(attribute, at, meant))
-
-
-def _fields_with(workspace: Workspace, section: InterfaceSection, attribute: str) -> list[str]:
-    """Return the fields of the fields of a section that have a name."""
-    inside = []
-    for field in section.fields.values():
-        if field.type.package and not field.type.is_list:
-            part = _section_of_type(workspace, field.type)
-            if part is not None and attribute in part.fields:
-                inside.append(f"{field.name}.{attribute}")
-    return inside
+    message = f"{used.owner} has no {used.noun} {quoted(used.name)}; {hint}"
+    yield Mismatch(_INTERFACE_FIELD, message, at, corrections=corrections(used.name, at, meant))
 
 
 _FIELD_VALUE = Rule(

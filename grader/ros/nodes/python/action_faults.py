@@ -8,7 +8,7 @@ from grader.base.source import Location
 from grader.ros.nodes.message_uses import CodePart
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.python.constants import dotted
-from grader.ros.python.parse import Code, every_node, location_in, position_of
+from grader.ros.python.parse import Code, every_node
 from grader.ros.python.walking import walk
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
@@ -50,8 +50,8 @@ def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Ite
             f"{function.name}() sets no state of {of_goal}, so rclpy aborts it; "
             f"call {names[0]}.succeed()"
         )
-        at = location_in(code.source, position_of(function))
-        place = location_in(code.source, position_of(goal.call))
+        at = code.at(function)
+        place = code.at(goal.call)
         yield CodeFault("goal-state", message, at, place, is_certain=False)
 
 
@@ -74,8 +74,8 @@ def rejected_goals(code: Code, registered: Sequence[RegisteredGoal]) -> Iterator
                 f"{function.name}() answers no goal with GoalResponse.ACCEPT, so rclpy rejects "
                 "each, and executes none"
             )
-            at = location_in(code.source, position_of(function))
-            place = location_in(code.source, position_of(goal.call))
+            at = code.at(function)
+            place = code.at(goal.call)
             yield CodeFault("goal-state", message, at, place, is_certain=False)
 
 
@@ -201,8 +201,8 @@ def loops_without_transforms(
                     f"the loop in {function.name}() looks up transforms, and rclpy.spin() has one "
                     "thread, which reads none until the loop ends; use a MultiThreadedExecutor"
                 )
-                at = location_in(code.source, position_of(node))
-                place = location_in(code.source, position_of(goal.call))
+                at = code.at(node)
+                place = code.at(goal.call)
                 yield CodeFault("callback-wait", message, at, place, is_certain=False)
                 break
 
@@ -281,7 +281,7 @@ def _wrong_fields(code: Code, function: _Function) -> Iterator[CodeFault]:
                         f"the answer to get_result_async() has no field {field}: the result is "
                         f"{names[0]}.result().result"
                     )
-                    at = location_in(code.source, position_of(node))
+                    at = code.at(node)
                     yield CodeFault("action-result", message, at)
 
 
@@ -306,9 +306,7 @@ def buffers_without_listener(code: Code, names: Mapping[str, str]) -> Iterator[C
     for name, calls in made.items():
         if len(calls) == 1 and _is_only_asked(name, code):
             message = f"no TransformListener fills {name}: it never has a transform"
-            yield CodeFault(
-                "buffer-listener", message, location_in(code.source, position_of(calls[0]))
-            )
+            yield CodeFault("buffer-listener", message, code.at(calls[0]))
 
 
 def _is_only_asked(name: str, code: Code) -> bool:

@@ -8,7 +8,7 @@ from grader.ros.python.walking import children, walk
 
 _BRANCHES = (ast.If, ast.IfExp, ast.Match, ast.ExceptHandler)
 # What a handler of these does not keep from stopping the program.
-INTERRUPTS = frozenset({"KeyboardInterrupt", "SystemExit", "ExternalShutdownException"})
+_INTERRUPTS = frozenset({"KeyboardInterrupt", "SystemExit", "ExternalShutdownException"})
 
 
 def calls_in_branches(tree: ast.Module) -> frozenset[ast.Call]:
@@ -19,16 +19,22 @@ def calls_in_branches(tree: ast.Module) -> frozenset[ast.Call]:
         node, is_inside = pending.pop()
         if is_inside and isinstance(node, ast.Call):
             calls.append(node)
-        if isinstance(node, _BRANCHES) and not _asks_for_program(node):
+        if isinstance(node, _BRANCHES) and not program_name(getattr(node, "test", None)):
             is_inside = True
         pending += [(child, is_inside) for child in children(node)]
     return frozenset(calls)
 
 
-def _asks_for_program(node: ast.AST) -> bool:
-    test = getattr(node, "test", None)
-    left = test.left if isinstance(test, ast.Compare) else None
-    return isinstance(left, ast.Name) and left.id == "__name__"
+def program_name(test: ast.expr | None) -> str:
+    """Return the text that a condition compares __name__ with; empty for another condition."""
+    match test:
+        case ast.Compare(
+            left=ast.Name(id="__name__"),
+            ops=[ast.Eq()],
+            comparators=[ast.Constant(value=str(name))],
+        ):
+            return name
+    return ""
 
 
 def calls_caught(tree: ast.Module) -> frozenset[ast.Call]:
@@ -38,7 +44,7 @@ def calls_caught(tree: ast.Module) -> frozenset[ast.Call]:
     while pending:
         node = pending.pop()
         match node:
-            case ast.Try(body=body, handlers=handlers) if any(map(_may_catch_error, handlers)):
+            case ast.Try(body=body, handlers=handlers) if any(map(may_catch_error, handlers)):
                 inside = body
             case ast.With(items=items, body=body) if suppresses(items):
                 inside = body
@@ -52,7 +58,7 @@ def calls_caught(tree: ast.Module) -> frozenset[ast.Call]:
     return frozenset(calls)
 
 
-def _may_catch_error(handler: ast.ExceptHandler) -> bool:
+def may_catch_error(handler: ast.ExceptHandler) -> bool:
     """Return whether a handler may catch anything but what interrupts a program."""
     kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-    return any(kind is None or last_name(kind) not in INTERRUPTS for kind in kinds)
+    return any(kind is None or last_name(kind) not in _INTERRUPTS for kind in kinds)

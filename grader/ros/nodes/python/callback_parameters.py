@@ -16,7 +16,7 @@ from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argumen
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import dotted, last_name
-from grader.ros.python.parse import Code, location_in, own_nodes, position_of
+from grader.ros.python.parse import Code, own_nodes
 from grader.ros.python.walking import walk
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
@@ -161,10 +161,8 @@ def _faults_of(
         taken = _say_parameters(least, most, is_method=is_method)
         gets = f"{callback.given}: {callback.what}" if callback.what else "none"
         message = f"{name} takes {taken}, but a callback of {called}() is called with {gets}"
-        at = location_in(code.source, position_of(function))
-        yield CodeFault(
-            "callback-parameters", message, at, location_in(code.source, position_of(call))
-        )
+        at = code.at(function)
+        yield CodeFault("callback-parameters", message, at, code.at(call))
 
 
 def _may_be_called(callback: _CallbackRow, least: float, most: float) -> bool:

@@ -5,10 +5,12 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from grader.ros.known.releases import Release
+from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.python_calls import ArgumentKind, Written, WrongCall, wrong_call
 from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
+from grader.ros.python.bindings import names_bound
 from grader.ros.python.constants import dotted, last_name
-from grader.ros.python.parse import Code, Position, location_in, position_of
+from grader.ros.python.parse import Code
 from grader.ros.python.walking import walk
 
 _PLAIN_NODES = ("rclpy.Node", "rclpy.node.Node")
@@ -32,12 +34,11 @@ class CalledFunctions:
         self,
         code: Code,
         nodes: Sequence[ast.AST],
-        imports: Mapping[str, str],
         releases: Sequence[Release],
     ) -> None:
-        """Search in the nodes of the code; `imports` has the full names of what it imports."""
+        """Search in the nodes of the code."""
         self._code, self._releases = code, releases
-        self._stored = _count_bound(nodes)
+        self._stored = count_bound(nodes)
         self._rebound, self._defined = {*self._stored}, set[str]()
         self._bound_in: dict[ast.ClassDef, set[str]] = {}  # the names that bodies of classes bind
         self._named: dict[str, list[ast.ClassDef]] = {}  # the classes of each name
@@ -46,6 +47,7 @@ class CalledFunctions:
             self._add(node)
         rebound = self._rebound | self._defined | _names_of_several_imports(nodes)
         # The names that the module certainly imports, and does not bind to anything else.
+        imports = imported_names(nodes)
         self._imports = {name: full for name, full in imports.items() if name not in rebound}
         self._lost = rebound
         self._made = _calls_bound(nodes)
@@ -60,10 +62,7 @@ class CalledFunctions:
             self._add_class(node)
 
     def _add_class(self, owner: ast.ClassDef) -> None:
-        bound: set[str] = set()
-        for statement in owner.body:
-            bound.update(names_bound_by(statement))
-        self._bound_in[owner] = bound
+        self._bound_in[owner] = set[str]().union(*map(names_bound_by, owner.body))
         self._named.setdefault(owner.name, []).append(owner)
         for node in walk(owner):
             if isinstance(node, ast.Call):
@@ -74,7 +73,7 @@ class CalledFunctions:
         call: ast.Call,
         owner: ast.ClassDef | None,
         filled: Mapping[str, str],
-        known_kind: Callable[[ast.expr], ArgumentKind | None] = lambda _: None,
+        known_kind: Callable[[ast.expr], ArgumentKind | None],
     ) -> WrongCall | None:
         """Return what is wrong with the arguments of a call in a method of a node's class.
 
@@ -88,7 +87,8 @@ class CalledFunctions:
         def kind_of(argument: ast.expr) -> ArgumentKind | None:
             return known_kind(argument) or self._kind_of(owner, argument)
 
-        written = Written(call, self._code.source, self._span, kind_of, filled)
+        source = self._code.source
+        written = Written(call, source, CodeEdits(source).span, kind_of, filled)
         return wrong_call(written, called, self._releases)
 
     def _called_function(self, call: ast.Call, owner: ast.ClassDef | None) -> str | None:
@@ -179,20 +179,10 @@ class CalledFunctions:
             parts.pop()
         return len(parts) > 2 and parts[-2] in ("msg", "srv", "action") and parts[-1][0].isupper()
 
-    def _span(self, node: ast.AST) -> tuple[int, int]:
-        assert isinstance(node, ast.expr | ast.keyword)
-        start = position_of(node)
-        end = Position(node.end_lineno or node.lineno, (node.end_col_offset or 0) + 1)
-        return self._offset(start), self._offset(end)
 
-    def _offset(self, position: Position) -> int:
-        location = location_in(self._code.source, position)
-        return self._code.source.offset(location.line, location.column)
-
-
-def made_in(statements: Iterable[ast.stmt]) -> Iterator[tuple[str, str]]:
-    """Yield the variables and attributes that statements bind, with what their calls make."""
-    for target, calls in _calls_bound(statements).items():
+def made_in(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, str]]:
+    """Yield the variables and attributes that nodes bind, with what their calls make."""
+    for target, calls in _calls_bound(nodes).items():
         yield from ((target, dotted(call.func)) for call in calls)
 
 
@@ -215,7 +205,7 @@ def _names_of_several_imports(nodes: Iterable[ast.AST]) -> set[str]:
     return {name for name, full_names in names.items() if len(full_names) > 1}
 
 
-def _count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
+def count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
     """Return how often a variable or an attribute is bound."""
     bound: Counter[str] = Counter()
     for node in nodes:
@@ -224,17 +214,11 @@ def _count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
     return bound
 
 
-def names_bound_by(node: ast.stmt) -> Iterator[str]:
-    """Yield the names that a statement in the body of a class binds."""
+def names_bound_by(node: ast.stmt) -> set[str]:
+    """Return the names that a statement in the body of a class binds."""
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-        yield node.name
-        return
-    for part in walk(node):
-        match part:
-            case ast.Name(id=name, ctx=ast.Store()) | ast.FunctionDef(name=name):
-                yield name
-            case ast.alias(name=full, asname=asname):
-                yield asname or full.partition(".")[0]
+        return {node.name}
+    return names_bound(walk(node))
 
 
 def methods_of(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:

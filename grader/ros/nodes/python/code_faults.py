@@ -1,7 +1,7 @@
 """What stops a node in Python, or keeps it from doing anything, in one module.
 
-Each rule is about what certainly fails once it runs, in any code of the module: whether it is run,
-only `node_slips` asks. A callback is a function that is given to create_timer(),
+Each rule is about what certainly fails once it runs, in any code of the module: `running_code` says
+what a program certainly runs. A callback is a function that is given to create_timer(),
 create_subscription(), create_service() or ActionServer.
 """
 
@@ -10,6 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
+from pathlib import PurePosixPath
 from typing import Literal, NamedTuple
 
 from grader.base.names import closest, near
@@ -17,7 +18,6 @@ from grader.base.problems import NO_FIXES, Fix, Fixes
 from grader.base.source import Location
 from grader.base.text import cut, enumerated
 from grader.ros.known.package_tables import python_table
-from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.nodes.node_facts import CodeFault
@@ -29,24 +29,29 @@ from grader.ros.nodes.python.action_faults import (
     loops_without_transforms,
     rejected_goals,
 )
-from grader.ros.nodes.python.branches import calls_in_branches
+from grader.ros.nodes.python.branches import calls_in_branches, program_name
 from grader.ros.nodes.python.callback_parameters import (
     CallbackFunctions,
     wrong_callbacks,
 )
 from grader.ros.nodes.python.called_functions import (
     CalledFunctions,
+    count_bound,
     imported_names,
+    made_in,
+    methods_of,
     names_bound_by,
 )
+from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.log_calls import wrong_log_calls
-from grader.ros.nodes.python.message_imports import wrong_imports
-from grader.ros.nodes.python.node_constructors import early_uses
+from grader.ros.nodes.python.message_faults import wrong_imports
+from grader.ros.nodes.python.node_constructors import early_uses, initialises, missing_init
 from grader.ros.nodes.python.parameter_values import parameters_as_values
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
+from grader.ros.nodes.python.undefined_names import undefined_names
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import binds_unseen, constant_in, dotted, last_name
-from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
+from grader.ros.python.parse import Code, every_node, position_of
 from grader.ros.python.values import QualifiedName
 from grader.ros.python.walking import children, walk
 
@@ -55,18 +60,6 @@ _OTHER_THREADS = ("xecutor", "hread", "spin_once", "spin_some", "asyncio", "awai
 _MAX_FAULTS = 20  # of one module and rule
 _MAX_SHOWN = 40  # characters of an expression
 _ANSWERING = ("create_service", "ActionServer")
-# Messages of pyflakes about what certainly fails when it runs.
-_CERTAIN = frozenset(
-    {
-        "UndefinedName",
-        "UndefinedLocal",
-        "StringDotFormatMissingArgument",
-        "PercentFormatPositionalCountMismatch",
-        "PercentFormatMissingArgument",
-        "PercentFormatExpectedMapping",
-        "PercentFormatExpectedSequence",
-    }
-)
 _INTERFACE = re.compile(r"\w+\.(?:msg|srv|action)\.[A-Z]\w*+")
 _SPINNING = "rclpy.spin_until_future_complete"
 # Names of groups and executors with which a callback may wait for another one.
@@ -109,6 +102,16 @@ class ModuleText(NamedTuple):
     imports: Collection[str]
     nodes: Mapping[Location, ast.ClassDef]  # the classes whose only bases are those of rclpy
     classes: Mapping[Location, ast.ClassDef]  # all of them
+
+    @property
+    def is_script(self) -> bool:
+        """Whether it is a file that is a program, whose name is its path."""
+        return "/" in self.name or self.name.endswith(".py")
+
+    @property
+    def node_name(self) -> str:
+        """The literal of the name that is assumed of a node without one: that of the file."""
+        return f'"{PurePosixPath(self.code.source.path).stem}"'
 
 
 class _PackageAttributes(NamedTuple):
@@ -161,35 +164,80 @@ def code_faults(
     `others` are all modules of the package, by their names, and `attributes` those of all of
     them. Calls are those of the given releases, or of any that are known.
     """
-    search = _Search(module, others, attributes)
-    yield from _undefined_names(module.code)
+    edits = CodeEdits(module.code.source)
+    search = _Search(module, others, attributes, edits)
+    yield from undefined_names(module.code)
     yield from wrong_imports(module.code)
+    yield from search.uncalled_main()
     yield from search.undefined_attributes()
     yield from search.called_callbacks()
     yield from search.wrong_parameters()
     yield from search.without_response()
     yield from search.waiting_callbacks()
     yield from search.of_programs()
-    yield from _early_uses(module, others, attributes)
+    yield from _early_uses(module, others, attributes, edits)
     yield from _wrong_calls(module, others, releases or RELEASES)
     yield from wrong_log_calls(module.code, module.parts)
     yield from parameters_as_values(module.code, module.nodes.values())
     yield from search.of_actions()
 
 
+def said_faults(faults: Iterable[CodeFault]) -> Iterator[CodeFault]:
+    """Yield the faults of a module that are said: of a name the first, and not too many.
+
+    They have the fixes of which it is certain what they write.
+    """
+    said, counts = set[str](), Counter[str]()
+    for fault in faults:
+        if fault.rule == "name-binding" and fault.message in said:
+            continue
+        said.add(fault.message)
+        counts[fault.rule] += 1
+        if counts[fault.rule] <= _MAX_FAULTS:
+            yield fault._replace(fixes=Fixes(partial(_certain_fixes, fault)))
+
+
+def _certain_fixes(fault: CodeFault) -> list[Fix]:
+    return [fix for fix in fault.fixes if fix.is_certain]
+
+
 def _early_uses(
-    module: ModuleText, others: Mapping[str, ModuleText], attributes: _PackageAttributes
+    module: ModuleText,
+    others: Mapping[str, ModuleText],
+    attributes: _PackageAttributes,
+    edits: CodeEdits,
 ) -> Iterator[CodeFault]:
     """Yield what constructors of nodes use before the node is made."""
-
-    def is_base(name: str) -> bool:
-        modules = (module, *others.values())
-        classes = [owner for other in modules for owner in other.classes.values()]
-        return any(name == last_name(base) for owner in classes for base in owner.bases)
-
+    bases = set[str]()
+    for other in (module, *others.values()):
+        for owner in other.classes.values():
+            bases.update(map(last_name, owner.bases))
+    spun = _find_spun(module)
     for owner in module.nodes.values() if not attributes.may_be_more else ():
-        if len(owner.bases) == 1 and not owner.keywords:
-            yield from early_uses(module.code, owner, attributes.stored, is_base)
+        if len(owner.bases) != 1 or owner.keywords:
+            continue
+        early = [*early_uses(module.code, owner, attributes.stored, bases)]
+        if not early and owner.name in spun:
+            early = [*missing_init(module.code, owner, bases)]
+        constructor = methods_of(owner).get("__init__")
+        fixes = NO_FIXES
+        if constructor is not None and not initialises(constructor):
+            code = f"super().__init__({module.node_name})"
+            fixes = edits.add_first(constructor.body, code)
+        yield from (fault._replace(fixes=fixes) for fault in early)
+
+
+def _find_spun(module: ModuleText) -> set[str]:
+    """Return the classes of the nodes that functions of a module make and spin."""
+    spun = set[str]()
+    for part in module.parts:
+        made = dict(made_in(walk(part.node)))
+        for call in part.calls:
+            if last_name(call.func) in _SPINS or last_name(call.func) == "add_node":
+                for argument in call.args:
+                    spun.add(dotted(getattr(argument, "func", argument)))
+                    spun.add(made.get(dotted(argument), ""))
+    return spun
 
 
 def _wrong_calls(
@@ -199,28 +247,33 @@ def _wrong_calls(
     nodes = every_node(module.code.tree)
     if binds_unseen(nodes):
         return
-    functions = CalledFunctions(module.code, nodes, imported_names(nodes), releases)
+    functions = CalledFunctions(module.code, nodes, releases)
     classes = {*NODE_CLASSES}
     for other in others.values():
         classes.update(f"{other.name}.{node.name}" for node in other.nodes.values())
-    count, package = 0, module.name.partition(".")[0]
+    package = module.name.partition(".")[0]
+    own_classes = {node.name for node in module.nodes.values()}
     assigned = [last_name(node.value) for node in nodes if isinstance(node, ast.Assign)]
     names_classes = any(name[:1].isupper() for name in assigned)
     for part in module.parts:
         owner = module.nodes.get(part.of) if part.of is not None else None
         other_names = _other_names(part.node) if names_classes else {}
         kind_in_part = partial(_kind_in_part, package, classes, part, other_names)
+        filled = {"node_name": module.node_name}
+        made = [name for name, kind in made_in(walk(part.node)) if kind in own_classes]
+        if owner is not None:
+            filled["node"] = "self"
+        elif len(made) == 1:
+            filled["node"] = made[0]
         wrong_calls = {
-            call: functions.wrong_call(call, owner, {}, kind_in_part) for call in part.calls
+            call: functions.wrong_call(call, owner, filled, kind_in_part) for call in part.calls
         }
-        reactions = {call: wrong.reaction for call, wrong in wrong_calls.items() if wrong}
-        certain = set(certain_nodes(part.node)) if reactions else set[ast.AST]()
-        said = [call for call in reactions if call in certain]
+        wrong = {call: fault for call, fault in wrong_calls.items() if fault is not None}
+        certain = set(certain_nodes(part.node)) if wrong else set[ast.AST]()
+        said = [call for call in wrong if call in certain]
         for call in sorted(said, key=position_of):
-            count += 1
-            if count <= _MAX_FAULTS:
-                at = location_in(module.code.source, position_of(call))
-                yield CodeFault("call-arguments", reactions[call], at)
+            at = module.code.at(call)
+            yield CodeFault("call-arguments", wrong[call].reaction, at, fixes=wrong[call].fixes)
 
 
 def _other_names(function: ast.AST) -> Mapping[str, ast.expr]:
@@ -259,52 +312,6 @@ def _kind_in_part(
     return "type" if _INTERFACE.fullmatch(name) and not is_own else None
 
 
-def _undefined_names(code: Code) -> Iterator[CodeFault]:
-    """Yield the names that are not defined, and texts that are formatted with too little."""
-    from pyflakes.checker import Checker  # late: few commands read the code of nodes
-
-    class ReleaseChecker(Checker):
-        # Instead of those of the Python that runs it.
-        builtIns = set[str]()  # noqa: N815, RUF012
-
-    if binds_unseen(every_node(code.tree)):
-        return
-    try:
-        names = {*python_names("builtins", code.releases), "WindowsError"}
-        names |= {"__file__", "__builtins__", "__annotations__"}  # which each module has
-        checker = ReleaseChecker(code.tree, builtins=names)
-    except RecursionError:
-        return
-    unevaluated = _unevaluated(code.tree)
-    said = set[str]()
-    for message in sorted(checker.messages, key=lambda fault: (fault.lineno, fault.col)):
-        text = message.message % message.message_args
-        at = Position(message.lineno, message.col + 1)
-        if type(message).__name__ in _CERTAIN and at not in unevaluated and text not in said:
-            said.add(text)
-            if len(said) <= _MAX_FAULTS:
-                yield CodeFault("name-binding", text, location_in(code.source, at))
-
-
-def _unevaluated(tree: ast.Module) -> set[Position]:
-    """Return the places in annotations, which Python does not always evaluate."""
-    places = set[Position]()
-    for node in every_node(tree):
-        match node:
-            case ast.AnnAssign(annotation=annotation):
-                inside: ast.expr | None = annotation
-            case ast.arg(annotation=inside):
-                pass
-            case ast.FunctionDef(returns=inside) | ast.AsyncFunctionDef(returns=inside):
-                pass
-            case _:
-                continue
-        for part in walk(inside) if inside is not None else ():
-            if isinstance(part, ast.expr):
-                places.add(position_of(part))
-    return places
-
-
 class _Registered(NamedTuple):
     """A function that is given as a callback: the call that is given it, and what it is given."""
 
@@ -322,8 +329,10 @@ class _Search:
         module: ModuleText,
         others: Mapping[str, ModuleText],
         attributes: _PackageAttributes,
+        edits: CodeEdits,
     ) -> None:
         self._module, self._others, self._attributes = module, others, attributes
+        self._edits = edits
         self._callbacks = CallbackFunctions(module.code, module.classes, attributes.stored)
         self._code = module.code
         self._functions = {
@@ -343,19 +352,7 @@ class _Search:
                         yield _Registered(name, call, given, part)
 
     def _at(self, node: ast.expr | ast.stmt) -> Location:
-        return location_in(self._code.source, position_of(node))
-
-    def _end(self, node: ast.expr) -> int:
-        """Return the offset of the end of an expression."""
-        position = Position(node.end_lineno or node.lineno, (node.end_col_offset or 0) + 1)
-        at = location_in(self._code.source, position)
-        return self._code.source.offset(at.line, at.column)
-
-    def _rewrite(self, start: int, end: int, new: str) -> Fixes:
-        """Return the fix of a text between two offsets."""
-        edit = self._code.source.edit(start, end, new)
-        fix = Fix((edit,), f"{edit.old} is read as {new}")
-        return Fixes(lambda: [fix])
+        return self._code.at(node)
 
     def _function(
         self, node: ast.expr, part: CodePart
@@ -380,7 +377,7 @@ class _Search:
     def _undefined_in(
         self, part: CodePart, owner: ast.ClassDef, known: Collection[str], asked: set[str]
     ) -> Iterator[CodeFault]:
-        """Yield those of a method; what is said is added to what the module asks for."""
+        """Yield those of a method, wherever they are used."""
         own_names = {name for node in owner.body for name in names_bound_by(node)}
         read: list[ast.Attribute] = []
         for node in certain_nodes(part.node):
@@ -389,11 +386,10 @@ class _Search:
                     read.append(node)
                 case ast.AugAssign(target=ast.Attribute(value=ast.Name(id="self")) as target):
                     read.append(target)
-        for node in sorted(read, key=position_of):  # the first use is said
+        for node in sorted(read, key=position_of):
             name = node.attr
             if name in own_names or name in known or name in asked or name.startswith("_"):
                 continue
-            asked.add(name)
             sure = near(name, own_names.union(known))
             meant = sure or closest(name, own_names)
             yield self._undefined_attribute(node, owner.name, meant, is_sure=sure is not None)
@@ -404,11 +400,11 @@ class _Search:
         """Return that a class has no attribute of a name, with the one that may be meant."""
         hint = f"; did you mean {meant}?" if meant is not None else ""
         message = f"{owner} has no attribute {node.attr}{hint}"
-        end = self._end(node)
+        end = self._edits.span(node)[1]
         start = end - len(node.attr)
         fixes = NO_FIXES
         if is_sure and meant is not None:
-            fixes = self._rewrite(start, end, meant)
+            fixes = self._edits.rewrite(start, end, meant)
         return CodeFault("name-binding", message, self._code.source.at(start), fixes=fixes)
 
     # --- Callbacks
@@ -432,8 +428,7 @@ class _Search:
             message = f"{registered.by}() {what}; write {name} without the parentheses"
             at, fixes = self._at(registered.given), NO_FIXES
             if not (registered.given.args or registered.given.keywords):
-                start = self._code.source.offset(at.line, at.column)
-                fixes = self._rewrite(start, self._end(registered.given), name)
+                fixes = self._edits.rewrite(*self._edits.span(registered.given), name)
             yield CodeFault("callback-call", message, at, fixes=fixes)
 
     def wrong_parameters(self) -> Iterator[CodeFault]:
@@ -541,11 +536,7 @@ class _Search:
 
     def _only_bound(self, made: Sequence[str]) -> set[str]:
         """Return those of some names that the module binds to nothing else."""
-        bound = Counter(
-            getattr(node, "attr", getattr(node, "id", ""))
-            for node in (every_node(self._code.tree) if made else ())
-            if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
-        )
+        bound = count_bound(every_node(self._code.tree) if made else ())
         return {name for name in made if bound[name.rpartition(".")[2]] == made.count(name)}
 
     def _loops(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[CodeFault]:
@@ -737,7 +728,9 @@ class _Search:
             yield from self._unspun(init, reached)
         if spin is not None and not self._is_initialised(names):
             message = "rclpy.init() is missing, so rclpy makes no node"
-            yield CodeFault("rclpy-init", message, self._at(spin))
+            [part] = [part for part in self._module.parts if spin in part.calls]
+            fixes = self._edits.add_first(part.node.body, "rclpy.init()")
+            yield CodeFault("rclpy-init", message, self._at(spin), fixes=fixes)
 
     def _unspun(self, init: ast.Call, reached: Sequence[ModuleText]) -> Iterator[CodeFault]:
         """Yield that nothing spins a node with callbacks, or that it is spun once."""
@@ -751,7 +744,39 @@ class _Search:
                 "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
             )
             is_certain = not self._may_work_in_loops(reached)
-            yield CodeFault("node-spins", message, self._at(init), is_certain=is_certain)
+            at, fixes = self._at(init), self._spin()
+            yield CodeFault("node-spins", message, at, None, is_certain, fixes)
+
+    def _spin(self) -> Fixes:
+        """Return the fix that spins the node of the only statement that makes one."""
+        classes = {node.name for node in self._module.nodes.values()}
+        calls, nodes = list[ast.Call](), list[ast.AST]()
+        for part in self._module.parts:
+            calls += [call for call in part.calls if dotted(call.func) in classes]
+            nodes += walk(part.node) if part.of is None and part.name else ()
+        for statement in nodes if len(calls) == 1 else ():
+            match statement:
+                case ast.Expr(value=call) if call is calls[0]:
+                    start, end = self._edits.span(call)
+                    made = self._code.source.text[start:end]
+                    return self._edits.rewrite(start, end, f"rclpy.spin({made})")
+                case ast.Assign(targets=[ast.Name(id=name)], value=call) if call is calls[0]:
+                    return self._edits.add_behind(statement, f"rclpy.spin({name})")
+        return NO_FIXES
+
+    def uncalled_main(self) -> Iterator[CodeFault]:
+        """Yield that a file that is a program defines main(), and calls nothing."""
+        tree, text = self._code.tree, self._code.source.text
+        main = next((node for node in tree.body if getattr(node, "name", "") == "main"), None)
+        if not isinstance(main, ast.FunctionDef) or not self._module.is_script:
+            return
+        if any(map(_acts, tree.body)) or self._is_imported_script():
+            return
+        message = "main() is never called, so the program does nothing"
+        space = "\n\n" if text.endswith("\n") else "\n\n\n"
+        code = f'{space}if __name__ == "__main__":\n    main()\n'
+        fixes = self._edits.insert(len(text), code, "main() is called")
+        yield CodeFault("program-main", message, self._at(main), fixes=fixes)
 
     def _certainly_registers(self, init: ast.Call) -> bool:
         """Return whether a node that functions of the module make certainly has a callback.
@@ -870,6 +895,14 @@ class _Search:
             return True
         return self._is_imported()
 
+    def _is_imported_script(self) -> bool:
+        """Return whether another script may import this one, which is beside it."""
+        names = set[str]()
+        for other in self._others.values():
+            for imported in other.imports:
+                names.update(imported.split("."))
+        return PurePosixPath(self._module.name).stem in names
+
     def _is_imported(self) -> bool:
         name = self._module.name
         others = [other for other in self._others.values() if other.name != name]
@@ -883,22 +916,26 @@ class _Search:
         pending = [self._module]
         while pending:
             for full in pending.pop().imports:
-                names = [full, full.rpartition(".")[0]]
-                own_module = next(
-                    (
-                        self._others[module_name]
-                        for module_name in names
-                        if module_name in self._others
-                    ),
-                    None,
-                )
-                if own_module is not None:
-                    if own_module.name not in reached:
-                        reached[own_module.name] = own_module
-                        pending.append(own_module)
-                elif not is_passive(full):
-                    return None
+                own_module = self._others.get(full) or self._others.get(full.rpartition(".")[0])
+                if own_module is None:
+                    if not is_passive(full):
+                        return None
+                elif own_module.name not in reached:
+                    reached[own_module.name] = own_module
+                    pending.append(own_module)
         return [*reached.values()]
+
+
+def _acts(statement: ast.stmt) -> bool:
+    """Return whether a statement of a program's body may do more than to define names."""
+    match statement:
+        case ast.If(test=test, orelse=[]) if program_name(test) not in ("", "__main__"):
+            return False
+        case ast.Import() | ast.ImportFrom() | ast.FunctionDef() | ast.ClassDef():
+            return False
+        case ast.Assign() | ast.Expr() | ast.If(orelse=[]):
+            return any(isinstance(part, ast.Call | ast.Await) for part in walk(statement))
+    return True
 
 
 def _imports(module: ModuleText, other: ModuleText) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from grader.ros.nodes.message_uses import CodePart, certain_nodes
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.python.constants import last_name
-from grader.ros.python.parse import Code, location_in, position_of
+from grader.ros.python.parse import Code
 
 # rclpy/rclpy/impl/rcutils_logger.py, branches humble and jazzy.
 _LEVELS = frozenset({"debug", "info", "warn", "warning", "error", "fatal"})
@@ -35,9 +35,7 @@ def wrong_log_calls(code: Code, parts: Sequence[CodePart]) -> Iterator[CodeFault
         certain = set(certain_nodes(part.node)) if wrong else set[ast.AST]()
         for call, reason in wrong.items():
             if call in certain:
-                yield CodeFault(
-                    "call-arguments", reason, location_in(code.source, position_of(call))
-                )
+                yield CodeFault("call-arguments", reason, code.at(call))
 
 
 def _reason(call: ast.Call, *, is_other: bool) -> str:

@@ -1,12 +1,12 @@
 """Constructors of nodes that use the node before its base class is initialised, or without that."""
 
 import ast
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.nodes.python.called_functions import methods_of, names_bound_by
 from grader.ros.python.constants import dotted
-from grader.ros.python.parse import Code, location_in, position_of
+from grader.ros.python.parse import Code
 from grader.ros.python.walking import children, walk
 
 # Methods of rclpy's Node that read attributes which its constructor sets: rclpy/node.py of
@@ -30,49 +30,58 @@ _UNCERTAIN = (
 
 
 def early_uses(
-    code: Code, owner: ast.ClassDef, replaced: Collection[str], is_base: Callable[[str], bool]
+    code: Code, owner: ast.ClassDef, replaced: Collection[str], bases: Collection[str]
 ) -> Iterator[CodeFault]:
     """Yield the first call in a constructor that needs what super().__init__() makes.
 
     `owner` is a class whose only base is a node of rclpy, `replaced` are attributes that code sets.
-    `is_base` says whether classes inherit one of a name: their constructors may make the node.
+    `bases` are the classes that others inherit: the constructors of these may make the node.
     """
     constructor = methods_of(owner).get("__init__")
-    if constructor is None or _is_made_elsewhere(owner, constructor, is_base):
+    if constructor is None or _is_made_elsewhere(owner, constructor, bases):
         return
     known = {*replaced, *(name for node in owner.body for name in names_bound_by(node))}
     for statement in _statements_before(constructor):
         called = _first_need(statement, owner, known)
         if called is not None:
-            when = "called later" if _initialises(constructor) else "not called"
+            when = "called later" if initialises(constructor) else "not called"
             message = (
                 f"{dotted(called.func)}() needs what super().__init__() makes, which is {when}: "
                 "Python raises an AttributeError; call super().__init__() first"
             )
-            yield CodeFault(
-                "constructor-order", message, location_in(code.source, position_of(called))
-            )
+            yield CodeFault("constructor-order", message, code.at(called))
             return
+
+
+def missing_init(code: Code, owner: ast.ClassDef, bases: Collection[str]) -> Iterator[CodeFault]:
+    """Yield that nothing initialises the node that a class is, which is spun."""
+    constructor = methods_of(owner).get("__init__")
+    if constructor is None or initialises(constructor):
+        return
+    if not _is_made_elsewhere(owner, constructor, bases):
+        message = f"super().__init__() is missing in the class {owner.name}, so it is no node"
+        at = code.at(constructor)
+        yield CodeFault("constructor-order", message, at)
 
 
 def _is_made_elsewhere(
     owner: ast.ClassDef,
     constructor: ast.FunctionDef | ast.AsyncFunctionDef,
-    is_base: Callable[[str], bool],
+    bases: Collection[str],
 ) -> bool:
     """Return whether something besides a constructor may make the node."""
     others = [method for method in methods_of(owner).values() if method is not constructor]
-    if any(map(_initialises, others)):
+    if any(map(initialises, others)):
         return True
-    return not _initialises(constructor) and (
-        is_base(owner.name) or _may_be_made(owner, constructor)
+    return not initialises(constructor) and (
+        owner.name in bases or _may_be_made(owner, constructor)
     )
 
 
 def _statements_before(constructor: ast.FunctionDef | ast.AsyncFunctionDef) -> list[ast.stmt]:
     """Return the statements before that with super().__init__(); all where there is none."""
     for position, statement in enumerate(constructor.body):
-        if _initialises(statement):
+        if initialises(statement):
             return constructor.body[:position]
     return constructor.body
 
@@ -91,7 +100,7 @@ def _may_be_made(owner: ast.ClassDef, constructor: ast.FunctionDef | ast.AsyncFu
     return False
 
 
-def _initialises(node: ast.AST) -> bool:
+def initialises(node: ast.AST) -> bool:
     """Return whether code may call the constructor of a base class."""
     return any(isinstance(part, ast.Attribute) and part.attr == "__init__" for part in walk(node))
 

@@ -14,7 +14,8 @@ from grader.ros.installation.installation import Installation
 from grader.ros.launch.launch_slips import launch_slips, name_slips
 from grader.ros.package.entry_points import entry_fault, entry_points
 from grader.ros.package.package import SETUP, Package
-from grader.ros.python.parse import Code, location_in, parse, position_of
+from grader.ros.python.misspelt_words import read_as
+from grader.ros.python.parse import Code, parse
 from grader.ros.python.walking import walk
 
 _LIMIT = 32 * 1024  # bytes of a file, because what may be meant is tried by reading it again
@@ -103,13 +104,9 @@ def _argument_slips(installation: Installation, code: Code) -> Iterator[Slip]:
     ignored = installation.misspelt
     for node in walk(code.tree) if ignored is not None and ignored.meant else ():
         if isinstance(node, ast.keyword) and ignored is not None and node.arg == ignored.name:
-            yield _slip(
-                code,
-                node,
-                ignored.name,
-                ignored.meant or "",
-                f"setuptools ignores the argument {ignored.name}",
-            )
+            reaction = f"setuptools ignores the argument {ignored.name}"
+            meant = ignored.meant or ""
+            yield read_as(code, node, ignored.name, meant, reaction, is_refused=False)
 
 
 def _entry_slips(package: Package, source: Source) -> Iterator[Slip]:
@@ -149,14 +146,4 @@ def _name_slips(
     for node in walk(code.tree):
         if isinstance(node, ast.Constant) and node.value == written:
             reaction = f"package.xml names the package {name!r}, setup.py {written!r}"
-            yield _slip(code, node, written, name, reaction)
-
-
-def _slip(
-    code: Code, node: ast.expr | ast.keyword, written: str, meant: str, reaction: str
-) -> Slip:
-    source = code.source
-    at = location_in(source, position_of(node))
-    start = source.text.find(written, source.offset(at.line, at.column))
-    edit = source.edit(start, start + len(written), meant)
-    return Slip((edit,), reaction, f"{written} is read as {meant}", source.at(start))
+            yield read_as(code, node, written, name, reaction, is_refused=False)

@@ -9,7 +9,7 @@ from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.nodes.python.called_functions import methods_of
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import dotted
-from grader.ros.python.parse import Code, every_node, location_in, position_of
+from grader.ros.python.parse import Code, every_node
 from grader.ros.python.walking import walk
 
 _METHOD = "get_parameter"
@@ -36,9 +36,7 @@ def parameters_as_values(code: Code, nodes: Collection[ast.ClassDef]) -> Iterato
                     "get_parameter() returns a Parameter, with which Python cannot compute: write "
                     ".value behind it"
                 )
-                yield CodeFault(
-                    "call-arguments", message, location_in(code.source, position_of(used))
-                )
+                yield CodeFault("call-arguments", message, code.at(used))
                 break
 
 

@@ -11,6 +11,7 @@ from itertools import combinations
 from typing import Literal, NamedTuple
 
 from grader.base.names import near
+from grader.base.problems import Fix, Fixes
 from grader.base.source import Edit, Edits, Source
 from grader.base.text import counted, cut
 from grader.ros.known.package_tables import call_signatures
@@ -82,13 +83,20 @@ class WrongCall(NamedTuple):
     assumption: str
     edits: Edits
 
+    @property
+    def fixes(self) -> Fixes:
+        """The fix that writes what is assumed; it is not certain where a value is not known."""
+        is_known = all(_ANYTHING not in edit.new for edit in self.edits)
+        fix = Fix(self.edits, self.assumption, is_known)
+        return Fixes(lambda: [fix] if fix.edits else [])
+
 
 class Written(NamedTuple):
     """A call as it is written."""
 
     call: ast.Call
     source: Source
-    span_of: Callable[[ast.AST], tuple[int, int]]  # the offsets of a part
+    span_of: Callable[[ast.expr | ast.keyword], tuple[int, int]]  # the offsets of a part
     kind_of: Callable[[ast.expr], ArgumentKind | None]  # None: of any kind
     filled: Mapping[str, str]  # what is given to parameters where it is missing
 
@@ -120,9 +128,9 @@ class Written(NamedTuple):
             edits.append(self.source.edit(start, end, ""))
         return tuple(edits)
 
-    def replaced(self, part: ast.AST, by: str | ast.AST) -> Edit:
-        """Return the edit that writes a text, or another part, in the place of a part."""
-        text = by if isinstance(by, str) else self.source.text[slice(*self.span_of(by))]
+    def replaced(self, part: ast.expr, by: ast.expr) -> Edit:
+        """Return the edit that writes another part in the place of a part."""
+        text = self.source.text[slice(*self.span_of(by))]
         return self.source.edit(*self.span_of(part), text)
 
 

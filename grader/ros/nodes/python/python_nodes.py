@@ -41,13 +41,18 @@ from grader.ros.nodes.node_facts import (
 )
 from grader.ros.nodes.python.branches import calls_caught, calls_in_branches
 from grader.ros.nodes.python.broadcast_transforms import SENDS, SendingMethod, sent_transforms
-from grader.ros.nodes.python.code_faults import ModuleText, attributes_in, code_faults
+from grader.ros.nodes.python.code_faults import (
+    ModuleText,
+    attributes_in,
+    code_faults,
+    said_faults,
+)
 from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bindings
 from grader.ros.nodes.python.inherited_nodes import OwnClass, with_inherited
 from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
-from grader.ros.nodes.python.node_slips import Program as StartedProgram
-from grader.ros.nodes.python.node_slips import node_slips
+from grader.ros.nodes.python.message_faults import wrong_fields
 from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
+from grader.ros.nodes.python.running_code import assumed_fixes
 from grader.ros.nodes.python.unused_publishers import unused_publishers
 from grader.ros.package.entry_points import (
     entry_as_meant,
@@ -66,7 +71,6 @@ from grader.ros.python.parse import (
     every_node,
     location_in,
     own_nodes,
-    parse,
     position_of,
 )
 from grader.ros.python.python_slips import python_slips
@@ -172,12 +176,13 @@ def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
     doubts = [Doubt("the file is not read", Location(package.path(path), 1, 1)) for path in unread]
     nodes = _nodes_of_modules(modules, are_all=not unread)
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
+    searched = _search_faults(modules.values(), package.releases)
     programs = []
     for program in _programs(package, modules, nodes, reads_meant=reads_meant):
-        read, doubts_of_program = _without_stopped(package, program, unread)
+        read, doubts_of_program = _without_stopped(package, program, searched)
         programs.append(read)
         doubts += doubts_of_program
-    return _joined_nodes(modules.values(), nodes, programs, doubts, package.releases)
+    return _joined_nodes(searched, nodes, programs, doubts)
 
 
 def _nodes_of_modules(modules: Mapping[str, "_Module"], *, are_all: bool) -> list[NodeFacts]:
@@ -207,14 +212,15 @@ def _with_unused(node: NodeFacts, unused: Collection[Location]) -> NodeFacts:
 
 
 def _without_stopped(
-    package: Package, program: NodeProgram, unread: Collection[str]
+    package: Package, program: NodeProgram, searched: "_Searched"
 ) -> tuple[NodeProgram, list[Doubt]]:
     """Return a program, without its nodes if it stops before it makes them; and why it stops."""
-    slips = _slips_of(package, program)
+    slips = _slips_of(package, program, searched)
     if slips is None:
         doubt = Doubt("not all programs are read", program.location)
         return program._replace(nodes=()), [doubt]
-    syntax = unreadable_module(package, program.path) if program.path in unread else None
+    is_read = package.path(program.path) in searched.modules
+    syntax = None if is_read else unreadable_module(package, program.path)
     read = program._replace(nodes=() if slips else program.nodes, syntax=syntax)
     return read, [Doubt(slip.reaction, slip.location) for slip in slips]
 
@@ -250,21 +256,31 @@ def _derived_classes(modules: Mapping[str, "_Module"]) -> set[str]:
     return kinds
 
 
+class _Searched(NamedTuple):
+    """The modules of a package, and the faults that are found in each of them, by their paths."""
+
+    modules: Mapping[str, "_Module"]
+    faults: Mapping[str, Sequence[CodeFault]]
+    is_whole: bool  # whether all of them are searched
+
+
 def _joined_nodes(
-    modules: Collection["_Module"],
+    searched: _Searched,
     nodes: Sequence[NodeFacts],
     programs: Sequence[NodeProgram],
     doubts: Sequence[Doubt],
-    releases: Sequence[Release],
 ) -> PackageNodes:
     """Return the nodes of a package with what its modules import and use, and their faults."""
+    modules = searched.modules.values()
     is_loose = any(module.has_loose_declarations for module in modules)
     imports = [type_import for module in modules for type_import in module.type_imports()]
-    uses = [use for module in modules for use in module.field_uses()]
+    uses = [use for module in modules for use in module.field_uses]
     synchronised: list[SynchronisedType] = []
     for module in modules:
         synchronised += module.synchronised_types()
-    faults, is_searched = _faults_of([module.text() for module in modules], releases)
+    faults: list[CodeFault] = []
+    for of_module in searched.faults.values():
+        faults += said_faults(of_module)
     return PackageNodes(
         nodes=tuple(nodes),
         programs=tuple(programs),
@@ -274,48 +290,55 @@ def _joined_nodes(
         field_uses=tuple(uses),
         faults=tuple(faults),
         synchronised=tuple(synchronised),
-        has_more_faults=not is_searched,
+        has_more_faults=not searched.is_whole,
     )
 
 
-def _faults_of(
-    modules: Sequence[ModuleText], releases: Sequence[Release]
-) -> tuple[list[CodeFault], bool]:
-    """Return the faults in the code of modules, and whether all of them are searched."""
-    by_name = {module.name: module for module in modules}
-    attributes = attributes_in(modules)
-    faults: list[CodeFault] = []
-    left, is_searched = _MAX_CODE, True
-    for module in modules:
-        left -= len(module.code.source.text)
+def _search_faults(modules: Collection["_Module"], releases: Sequence[Release]) -> _Searched:
+    """Return the modules of a package with the faults in their code."""
+    texts = [module.text() for module in modules]
+    by_name = {text.name: text for text in texts}
+    attributes = attributes_in(texts)
+    faults: dict[str, Sequence[CodeFault]] = {}
+    left, is_whole = _MAX_CODE, True
+    for text in texts:
+        source = text.code.source
+        left -= len(source.text)
         try:
             if left >= 0:
-                faults += code_faults(module, by_name, attributes, releases)
+                faults[source.path] = [*code_faults(text, by_name, attributes, releases)]
         except RecursionError:
             left = -1
-        is_searched = is_searched and left >= 0
-    return faults, is_searched
+        is_whole = is_whole and left >= 0
+    by_path = {text.code.source.path: module for text, module in zip(texts, modules, strict=True)}
+    return _Searched(by_path, faults, is_whole)
 
 
 def program_slips(package: Package) -> Iterator[Slip]:
     """Yield the slips for which a program in Python stops, or does nothing."""
     slips: dict[Edits, Slip] = {}
+    modules, _ = _read_modules(package)
+    searched = _search_faults(modules.values(), package.releases)
     for program in _programs(package, {}, ()):
-        for slip in _slips_of(package, program) or ():
+        for slip in _slips_of(package, program, searched) or ():
             slips.setdefault(slip.edits, slip)
     yield from slips.values()
 
 
-def _slips_of(package: Package, program: NodeProgram) -> list[Slip] | None:
+def _slips_of(package: Package, program: NodeProgram, searched: _Searched) -> Sequence[Slip] | None:
     """Return the slips of a program; None where too many programs are in a file to search each."""
     data = package.tree.read(program.path, _MAX_SEARCHED)
     if not package.budget.take_of_whole(len(data or b"") // _BYTES_A_PART):
         return None
-    code = parse(data or b"", package.path(program.path), package.releases)
-    if isinstance(code, Code):
-        started = StartedProgram(program.name, program.function)
-        return node_slips(code, started, package.releases)
-    return python_slips(data or b"", package.path(program.path))
+    path = package.path(program.path)
+    module = searched.modules.get(path)
+    if data is None or (module is not None and path not in searched.faults):
+        return ()
+    if module is None:
+        return python_slips(data, path)
+    text = module.text()
+    fields = wrong_fields(text.code.source, module.field_uses, package.releases)
+    return [*assumed_fixes(text, program.function, [*searched.faults[path], *fields])]
 
 
 def _module_paths(package: Package) -> dict[str, str]:
@@ -407,14 +430,7 @@ def _created_by(
     pending, seen, has_more = [f"{module}.{function}"], set[str](), False
     while pending:
         name = pending.pop(0)
-        owner = next(
-            (
-                modules[module_name]
-                for module_name in (name.rpartition(".")[0], name)
-                if module_name in modules
-            ),
-            None,
-        )
+        owner = modules.get(name.rpartition(".")[0]) or modules.get(name)
         has_more = has_more or (owner is None and _may_be_node_class(name))
         if name in seen or owner is None:
             continue
@@ -488,7 +504,7 @@ class _Module:
                 self._add_class(part, scope)
 
     def _at(self, node: ast.expr | ast.stmt) -> Location:
-        return location_in(self._code.source, position_of(node))
+        return self._code.at(node)
 
     def _add_class(self, node: ast.ClassDef, scope: Scope) -> None:
         """Keep a class and its methods, which reach its constants as attributes of self."""
@@ -618,9 +634,10 @@ class _Module:
         """Yield the messages, services and actions that the module certainly imports."""
         return type_imports(self._code.tree, self._code.source)
 
-    def field_uses(self) -> Iterator[FieldUse]:
-        """Yield the fields that the module uses of messages, services and actions."""
-        return field_uses(self._code, self._parts, self._constants.value_of)
+    @cached_property
+    def field_uses(self) -> Sequence[FieldUse]:
+        """The fields that the module uses of messages, services and actions."""
+        return [*field_uses(self._code, self._parts, self._constants.value_of)]
 
     def _node(
         self,

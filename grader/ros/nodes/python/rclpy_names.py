@@ -1,8 +1,4 @@
-"""What nodes in Python are made of: classes, callbacks, and modules that do nothing for them.
-
-Two readers search code for faults with these names. `node_slips` searches what a program certainly
-runs, and `code_faults` all code of a module.
-"""
+"""What nodes in Python are made of: classes, callbacks, and modules that do nothing for them."""
 
 from collections.abc import Mapping
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from grader.base.source import Location
 from grader.ros.python.constants import binds_unseen, dotted, last_name
-from grader.ros.python.parse import Code, every_node, location_in, position_of
+from grader.ros.python.parse import Code, every_node
 from grader.ros.python.walking import walk
 
 _OPENING = ("create_publisher", "create_lifecycle_publisher")
@@ -58,7 +58,7 @@ def _unused_in(code: Code, read: set[str]) -> Iterator[Location]:
         for statement in inside:
             call = _opened_by(statement, read, variables)
             if call is not None:
-                yield location_in(code.source, position_of(call))
+                yield code.at(call)
 
 
 def _opened_by(statement: ast.AST, read: set[str], variables: set[str]) -> ast.Call | None:

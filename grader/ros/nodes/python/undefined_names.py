@@ -1,0 +1,110 @@
+"""Names of Python code that are not defined, and texts that are formatted with too little."""
+
+import ast
+from collections.abc import Collection, Iterator
+
+from grader.base.names import near
+from grader.base.problems import NO_FIXES, Fixes
+from grader.ros.known.package_tables import interface_table
+from grader.ros.known.python_names import python_names
+from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.python.code_edits import CodeEdits
+from grader.ros.python.bindings import names_bound
+from grader.ros.python.constants import binds_unseen
+from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
+from grader.ros.python.walking import walk
+
+# Messages of pyflakes about what certainly fails when it runs.
+_CERTAIN = frozenset(
+    {
+        "UndefinedName",
+        "UndefinedLocal",
+        "StringDotFormatMissingArgument",
+        "PercentFormatPositionalCountMismatch",
+        "PercentFormatMissingArgument",
+        "PercentFormatExpectedMapping",
+        "PercentFormatExpectedSequence",
+    }
+)
+# Names that each module has, or that another system defines.
+_ELSEWHERE = frozenset({"__file__", "__builtins__", "__annotations__", "WindowsError"})
+# What students forget to import: modules, and names in them.
+_MODULES = ("rclpy", "math", "time", "os", "sys", "random")
+_IMPORTED = {"Node": "rclpy.node"}
+# Packages with the messages that nodes usually send, and names in them that other libraries have.
+_MESSAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "builtin_interfaces")
+_OF_OTHERS = ("Image", "Path")
+
+
+def undefined_names(code: Code) -> Iterator[CodeFault]:
+    """Yield the names that are not defined, wherever they are used, and such texts."""
+    from pyflakes.checker import Checker  # late: few commands read the code of nodes
+
+    class ReleaseChecker(Checker):
+        # Instead of those of the Python that runs it.
+        builtIns = set[str]()  # noqa: N815, RUF012
+
+    nodes = every_node(code.tree)
+    if binds_unseen(nodes):
+        return
+    try:
+        names = {*python_names("builtins", code.releases), *_ELSEWHERE}
+        checker = ReleaseChecker(code.tree, builtins=names)
+    except RecursionError:
+        return
+    unevaluated, bound = _unevaluated(code.tree), names_bound(nodes)
+    for message in sorted(checker.messages, key=lambda fault: (fault.lineno, fault.col)):
+        at, kind = Position(message.lineno, message.col + 1), type(message).__name__
+        if kind in _CERTAIN and at not in unevaluated:
+            fixes = NO_FIXES
+            if kind == "UndefinedName":
+                fixes = _define(code, str(message.message_args[0]), at, bound)
+            text = message.message % message.message_args
+            yield CodeFault("name-binding", text, location_in(code.source, at), fixes=fixes)
+
+
+def _define(code: Code, name: str, at: Position, bound: Collection[str]) -> Fixes:
+    """Return the fix that imports a name, or writes the one that surely is meant."""
+    edits, module = CodeEdits(code.source), _IMPORTED.get(name) or _module_of_message(name)
+    if module or name in _MODULES:
+        statement = f"from {module} import {name}" if module else f"import {name}"
+        for first in code.tree.body:
+            is_import = isinstance(first, ast.Import | ast.ImportFrom)
+            if is_import and getattr(first, "module", "") != "__future__":
+                return edits.add_before(first, statement)
+        return NO_FIXES
+    meant = near(name, bound)
+    if meant is None:
+        return NO_FIXES
+    location = location_in(code.source, at)
+    start = code.source.offset(location.line, location.column)
+    return edits.rewrite(start, start + len(name), meant)
+
+
+def _module_of_message(name: str) -> str:
+    """Return the module of the only well-known message of a name; empty if there is none."""
+    modules = [
+        f"{package}.msg"
+        for package in _MESSAGES
+        if name in (interface_table(package) or {}).get("msg", {})
+    ]
+    return modules[0] if len(modules) == 1 and name not in _OF_OTHERS else ""
+
+
+def _unevaluated(tree: ast.Module) -> set[Position]:
+    """Return the places in annotations, which Python does not always evaluate."""
+    places = set[Position]()
+    for node in every_node(tree):
+        match node:
+            case ast.AnnAssign(annotation=annotation):
+                inside: ast.expr | None = annotation
+            case ast.arg(annotation=inside):
+                pass
+            case ast.FunctionDef(returns=inside) | ast.AsyncFunctionDef(returns=inside):
+                pass
+            case _:
+                continue
+        for part in walk(inside) if inside is not None else ():
+            if isinstance(part, ast.expr):
+                places.add(position_of(part))
+    return places
