@@ -6,9 +6,8 @@ from the grammar of the file's language; it is searched when it is asked for.
 
 import posixpath
 import re
-from collections.abc import Callable
 
-from grader.base.source import Location, Source
+from grader.base.source import Location, Source, SourceOf
 
 _Language = tuple[str, ...]  # patterns, of which the first that matches counts
 
@@ -97,7 +96,7 @@ def end_offset(source: Source, start: int) -> int:
     return start + int(not text[start].isspace())
 
 
-def ended(where: Location, source_of: Callable[[str], Source | None]) -> Location:
+def ended(where: Location, source_of: SourceOf) -> Location:
     """Return a location with its end, and those of the macro calls that led to it.
 
     Without the file it ends where it begins. An end that is known stays.

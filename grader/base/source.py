@@ -2,6 +2,7 @@
 
 import re
 from bisect import bisect_right
+from collections.abc import Callable
 from functools import cached_property
 from itertools import accumulate
 from typing import Literal, NamedTuple
@@ -145,6 +146,9 @@ class Source:
         Also returns the offset of its start tag.
         """
         return self, self._tags[tag]
+
+
+SourceOf = Callable[[str], Source | None]  # returns the text of a file by its path
 
 
 class Base(NamedTuple):

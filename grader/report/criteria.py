@@ -11,7 +11,7 @@ from decimal import Decimal
 from itertools import groupby
 from typing import Literal, NamedTuple, TypeVar
 
-from grader.base.source import Edits, Location
+from grader.base.source import Edits, Location, SourceOf
 from grader.base.text import (
     by_name,
     enumerated,
@@ -24,7 +24,7 @@ from grader.lab.checks.manual import MANUAL_CHECKS
 from grader.lab.checks.outcome import Outcome
 from grader.lab.grading.report import Hint, Report, Result
 from grader.lab.rubric.criterion import Criterion, worth
-from grader.report.locations import SourceOf, excerpt_lines, location_text
+from grader.report.locations import excerpt_lines, location_text
 
 _T = TypeVar("_T")
 _K = TypeVar("_K", bound=Hashable)

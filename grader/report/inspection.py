@@ -3,7 +3,7 @@
 This is problems, tree, joints and poses, and what is wrong in packages.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.problems import Problem
-from grader.base.source import Base, Source
+from grader.base.source import Base, Source, SourceOf
 from grader.base.text import counted, printable
 from grader.base.transforms import Transform
 from grader.report.causes import SEVERITIES, in_order_of_severity
@@ -103,7 +103,7 @@ class Inspection:
     robots: tuple[InspectedRobot, ...] = ()
     package_problems: tuple[Problem, ...] = ()
     extent: "Extent | None" = None
-    source_of: Callable[[str], Source | None] | None = None
+    source_of: SourceOf | None = None
     base: Base = _NO_BASE  # its place in a repository
     besides: tuple[Path, ...] = ()  # the files that were read besides a single one
     ignored: int = 0  # how many problems are ignored, and not among these

@@ -4,16 +4,15 @@ In words, with their source line or an edit of it, and their path in the reposit
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from difflib import SequenceMatcher
 from itertools import groupby
 
 from grader.base.extents import end_of
-from grader.base.source import Edit, Location, Source
+from grader.base.source import Edit, Location, Source, SourceOf
 from grader.base.text import first_lines, printable
 
 _ARCHIVE = r"(?is)(.*?\.(?:zip|tar|tgz|tar\.gz))/"
-SourceOf = Callable[[str], Source | None]
 # A line of a file: its number, its text up to the marked part, that part if it has one, and the
 # rest.
 SourceLine = tuple[int, str, str | None, str]

@@ -13,7 +13,7 @@ from grader.app.commands.inspect_urdf import InspectRequest, open_and_inspect
 from grader.app.grading import GradeRequest, grade_submission
 from grader.base.errors import GraderError, InputError
 from grader.base.problems import Problem
-from grader.base.source import Source
+from grader.base.source import SourceOf
 from grader.base.text import printable_path
 from grader.report.formats import Format, InspectFormat
 from grader.report.inspection import InspectedRobot, Inspection
@@ -209,9 +209,7 @@ def _no_robot(path: str) -> str:
     return f"{printable_path(path)} has no robot to show: no file in it has a <robot>"
 
 
-def _broken(
-    problems: Sequence[Problem], source_of: Callable[[str], Source | None]
-) -> list[ProblemCard]:
+def _broken(problems: Sequence[Problem], source_of: SourceOf) -> list[ProblemCard]:
     """Return what is wrong with a robot that ROS 2 does not load, the errors first."""
     errors = [problem for problem in problems if problem.severity == "error"]
     return [problem_card(problem, source_of) for problem in (errors or problems)[:_MAX_SHOWN]]

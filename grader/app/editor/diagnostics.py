@@ -8,10 +8,9 @@ from lsprotocol import types as lsp
 
 from grader.app.editor.look import Look
 from grader.app.editor.text_ranges import TextRanges
-from grader.base.source import Base, Location
+from grader.base.source import Base, Location, SourceOf
 from grader.files.limits import ROBOT_ENDINGS
 from grader.report.findings import Finding, place_in_repository
-from grader.report.locations import SourceOf
 from grader.report.mistakes import Mistake
 from grader.ros.api import RECOVERED
 

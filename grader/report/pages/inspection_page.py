@@ -1,11 +1,11 @@
 """The page of an inspection."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from grader import __version__
 from grader.base.problems import Problem
-from grader.base.source import Source
+from grader.base.source import SourceOf
 from grader.base.text import printable
 from grader.report.drawing.picture import plain_picture
 from grader.report.inspection import (
@@ -58,9 +58,7 @@ def inspection_html(inspection: Inspection, viewing: Viewing | None = None) -> s
     return render_robot_page("inspection.html", values, picture, Assets(), {}, viewing)
 
 
-def log_cards(
-    answers: "Iterable[LogAnswer]", source_of: Callable[[str], Source | None]
-) -> list[LogCard]:
+def log_cards(answers: "Iterable[LogAnswer]", source_of: SourceOf) -> list[LogCard]:
     """Return what is said of the messages of a log, what the files explain first."""
     cards = []
     for answer in answers:
@@ -70,7 +68,7 @@ def log_cards(
     return cards or [LogCard(NO_FAILURE, is_explained=False)]
 
 
-def problem_card(problem: Problem, source_of: Callable[[str], Source | None]) -> ProblemCard:
+def problem_card(problem: Problem, source_of: SourceOf) -> ProblemCard:
     """Return a problem with its line, and its place in the source."""
     line = problem_line(problem)
     return ProblemCard(problem.severity, line, source_lines(problem.location, source_of))

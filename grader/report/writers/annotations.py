@@ -11,12 +11,11 @@ from collections.abc import Iterator
 from functools import cache
 
 from grader.base.problems import Severity
-from grader.base.source import Base
+from grader.base.source import Base, SourceOf
 from grader.base.text import printable
 from grader.lab.grading.report import Report
 from grader.report.content import closing_lines, head, other_problems, report_sections, score_text
 from grader.report.criteria import Entry, earned_text, is_failure, is_manual, remarks_on
-from grader.report.locations import SourceOf
 from grader.report.writers.workflow_commands import (
     Annotation,
     annotation_place,

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 from grader.base.extents import ended
 from grader.base.problems import Problem
+from grader.base.source import SourceOf
 from grader.report.json_data import COUNT, PLACE, TEXT, JsonObject, Many, each, nullable
-from grader.report.locations import SourceOf
 
 # The end is the place after the last character; where it is not known, that of the start.
 _EXTENT = {**PLACE, **each(COUNT, "end_line end_column")}

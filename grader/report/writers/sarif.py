@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 from grader import __version__
 from grader.base.extents import ended
-from grader.base.source import Base
+from grader.base.source import Base, SourceOf
 from grader.report.findings import (
     DOCUMENTATION,
     Finding,
@@ -23,7 +23,6 @@ from grader.report.findings import (
 )
 from grader.report.inspection import Inspection
 from grader.report.json_data import to_json
-from grader.report.locations import SourceOf
 
 if TYPE_CHECKING:
     from grader.lab.grading.report import Report

@@ -16,7 +16,7 @@ from rich.style import Style
 from rich.text import Text
 
 from grader.base.problems import Problem
-from grader.base.source import Location
+from grader.base.source import Location, SourceOf
 from grader.base.text import counted, enumerated, format_points, printable
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import worth
@@ -41,7 +41,7 @@ from grader.report.criteria import (
     remarks_on,
     status_of,
 )
-from grader.report.locations import SourceOf, diff_lines, location_text
+from grader.report.locations import diff_lines, location_text
 from grader.report.screen import link_to
 from grader.report.statuses import STYLES
 from grader.report.writers.terminal_page import (

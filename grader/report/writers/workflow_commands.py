@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 from grader.base.extents import ended
 from grader.base.problems import Severity
-from grader.base.source import Base, Location
+from grader.base.source import Base, Location, SourceOf
 from grader.base.text import printable, without_tag_commands
-from grader.report.locations import SourceOf, archive_around, location_text
+from grader.report.locations import archive_around, location_text
 
 _MAX_ANNOTATIONS = 10  # of each type
 _MAX_MESSAGE = 4000  # characters

@@ -16,7 +16,14 @@ from grader.base.source import Location, Source
 from grader.ros.nodes.node_facts import FieldUse, TypeImport
 from grader.ros.python.bindings import names_bound
 from grader.ros.python.constants import dotted, last_name, offset_of
-from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
+from grader.ros.python.parse import (
+    AnyFunction,
+    Code,
+    Position,
+    every_node,
+    location_in,
+    position_of,
+)
 from grader.ros.python.values import SCALARS, QualifiedName, Scope, Value
 from grader.ros.python.walking import children, walk
 
@@ -49,7 +56,7 @@ class CodePart(NamedTuple):
     """
 
     name: str
-    node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Module
+    node: AnyFunction | ast.Module
     calls: Sequence[ast.Call]
     scope: Scope
     of: Location | None = None
@@ -237,7 +244,7 @@ class _FunctionUses:
 
     def __init__(
         self,
-        function: ast.FunctionDef | ast.AsyncFunctionDef | ast.Module,
+        function: AnyFunction | ast.Module,
         evaluate: _Evaluate,
         given: Sequence[str],
     ) -> None:
@@ -261,7 +268,7 @@ class _FunctionUses:
         self._bind_assigned()
 
     def _bind_arguments(self, function: ast.AST, given: Sequence[str]) -> None:
-        if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
+        if isinstance(function, AnyFunction):
             names = [node.arg for node in function.args.args]
             names = names[1:] if names[:1] == ["self"] else names
             for name, kind in zip(names, given, strict=False):

@@ -3,12 +3,12 @@
 It is started as the launch files of a package start it.
 """
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from math import hypot, isfinite
 from typing import NamedTuple
 
-from grader.base.source import LazyLocation, Source
+from grader.base.source import LazyLocation, Source, SourceOf
 from grader.base.transforms import Transform, Vector, rotation_from_quaternion
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
@@ -47,7 +47,7 @@ def with_transforms(
     robot: Robot,
     package: Package,
     paths: Sequence[str],
-    source_of: Callable[[str], Source | None],
+    source_of: SourceOf,
 ) -> Robot:
     """Return a robot with the frames that launch files of a package publish.
 
@@ -80,7 +80,7 @@ def _with_frames(
     launch: Launch,
     name: str,
     roots: Collection[str],
-    source_of: Callable[[str], Source | None],
+    source_of: SourceOf,
 ) -> Robot:
     """Return a robot with the frames that one launch file publishes."""
     if launch.syntax is not None or launch.faults:
@@ -156,9 +156,7 @@ def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
     )
 
 
-def _read_frame(
-    node: StartedNode, source_of: Callable[[str], Source | None]
-) -> _StaticFrame | None:
+def _read_frame(node: StartedNode, source_of: SourceOf) -> _StaticFrame | None:
     """Return the frame that a static_transform_publisher publishes, its child empty for none.
 
     Returns None if it is unknown.

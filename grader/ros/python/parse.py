@@ -53,6 +53,7 @@ class Position(NamedTuple):
 START = Position(1, 1)
 
 
+AnyFunction = ast.FunctionDef | ast.AsyncFunctionDef
 _Placed = ast.expr | ast.stmt | ast.excepthandler | ast.alias | ast.keyword
 
 
@@ -270,7 +271,7 @@ def own_nodes(node: ast.AST) -> list[ast.AST]:
     while pending:
         part = pending.pop()
         nodes.append(part)
-        if not isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
+        if not isinstance(part, AnyFunction | ast.ClassDef | ast.Lambda):
             pending += children(part)
     return nodes
 

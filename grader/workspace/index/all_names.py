@@ -8,11 +8,11 @@ computed unless it is asked for.
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 
 from grader.base.errors import NotDecided
-from grader.base.source import Source
+from grader.base.source import Source, SourceOf
 from grader.ros.known.shared_names import shared_names
 from grader.workspace.index.names_in_files import names_in_launch_files, names_in_yaml
 from grader.workspace.index.names_in_graph import ComputedName, GraphNames
@@ -30,7 +30,6 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Definition, Fact, Use
 from grader.workspace.rules.reading import facts_once
 
-_SourceOf = Callable[[str], Source | None]
 _MAX_TEXT = 4 * 1024 * 1024  # bytes of a file
 # Kinds that mean the same things: each link is a frame.
 _ALIKE = {"frame": "link"}
@@ -120,7 +119,7 @@ def _order(name: WrittenName) -> tuple[str, int, int, str, str, str]:
     return at.path, at.line, at.column, name.kind, name.name, name.owner
 
 
-def _names_of_facts(source_of: _SourceOf, facts: Iterable[Fact]) -> Iterator[WrittenName]:
+def _names_of_facts(source_of: SourceOf, facts: Iterable[Fact]) -> Iterator[WrittenName]:
     """Yield the names of facts at what is written of them.
 
     There are none for what no file of the workspace has.

@@ -6,13 +6,13 @@ name of a remapping. Its owner is the full name, or the program in which a remap
 """
 
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import chain
 from string import ascii_letters, digits
 from typing import NamedTuple
 
-from grader.base.source import Location, Source
+from grader.base.source import Location, Source, SourceOf
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.nodes.node_facts import NodeFacts, NodeFrame
@@ -81,7 +81,7 @@ _Names = Iterator[WrittenName | ComputedName]
 class GraphNames:
     """Reads the names of topics, services and actions of a workspace."""
 
-    def __init__(self, workspace: Workspace, source_of: Callable[[str], Source | None]) -> None:
+    def __init__(self, workspace: Workspace, source_of: SourceOf) -> None:
         self._workspace, self._source_of = workspace, source_of
 
     @cached_property

@@ -1,12 +1,12 @@
 """What packages have, where files name it: packages, programs, files, types and plug-ins."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from itertools import chain
 
 from grader.base import markup
-from grader.base.source import Location, Source
+from grader.base.source import Location, Source, SourceOf
 from grader.ros.interfaces.interface_types import FieldType
 from grader.ros.nodes.node_facts import NodeProgram
 from grader.ros.package.package import Package
@@ -38,7 +38,7 @@ _TYPE, _FILE, _PROGRAM = "message type", "file", "program"
 class PackageNames:
     """Reads the names of what packages have."""
 
-    def __init__(self, workspace: Workspace, source_of: Callable[[str], Source | None]) -> None:
+    def __init__(self, workspace: Workspace, source_of: SourceOf) -> None:
         self._workspace, self._source_of = workspace, source_of
 
     def names(self) -> Iterator[WrittenName]:

@@ -4,11 +4,11 @@ A rename asks whether a file keeps the old word: then it is not certain that eve
 """
 
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
-from grader.base.source import Location, Source
+from grader.base.source import Location, SourceOf
 from grader.workspace.index.written_names import WrittenName
 from grader.workspace.model.own_code import CPP_ENDINGS
 from grader.workspace.model.workspace import Workspace
@@ -52,7 +52,7 @@ class _WrittenText(NamedTuple):
 
 def words_left(
     paths: Iterable[str],
-    source_of: Callable[[str], Source | None],
+    source_of: SourceOf,
     named: WrittenName,
 ) -> Iterator[Location]:
     """Yield where files have a name as a whole text, or as a part of one with slashes."""

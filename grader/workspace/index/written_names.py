@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 
 from grader.base import markup
 from grader.base.extents import end_offset
-from grader.base.source import Location, Source
+from grader.base.source import Location, Source, SourceOf
 
 Role = Literal["definition", "use"]
 Span = tuple[int, int]  # the offsets of the first character and after the last one
@@ -319,7 +319,7 @@ def call_end(source: Source, start: int) -> int:
     return len(text)
 
 
-def reader_of(read: Callable[[str], bytes | None]) -> Callable[[str], Source | None]:
+def reader_of(read: Callable[[str], bytes | None]) -> SourceOf:
     """Return what gives the texts of files by their paths, and reads each file once."""
     known: dict[str, Source | None] = {}
 

@@ -5,13 +5,13 @@ alike are no proof.
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
 from grader.base.errors import NotDecided
 from grader.base.problems import Problem
-from grader.base.source import Location, Source
+from grader.base.source import Location, SourceOf
 from grader.base.text import cut
 from grader.ros.known.output_rows import known_outputs
 from grader.ros.package.robot_file import Read
@@ -171,7 +171,7 @@ def _rejections_of_started(
 def _has_names(
     problem: Problem,
     names: Sequence[str],
-    source_of: Callable[[str], Source | None],
+    source_of: SourceOf,
     ends: NameFixes,
 ) -> bool:
     """Return whether a finding, or the lines that it names, have each of some names as a word."""

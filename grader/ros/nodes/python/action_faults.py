@@ -8,10 +8,9 @@ from grader.base.source import Location
 from grader.ros.nodes.message_uses import CodePart
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.python.constants import dotted
-from grader.ros.python.parse import Code, every_node
+from grader.ros.python.parse import AnyFunction, Code, every_node
 from grader.ros.python.walking import walk
 
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
 # What sets the state of a goal: rclpy/rclpy/action/server.py of jazzy.
 _CANCELS = "canceled"
 _ENDING_STATES = frozenset({"succeed", "abort", _CANCELS})
@@ -24,7 +23,7 @@ _LOOKS_UP = frozenset({"lookup_transform", "can_transform", "transform", "lookup
 class RegisteredGoal(NamedTuple):
     """A function that executes the goals of an action, and the call that is given it."""
 
-    function: _Function
+    function: AnyFunction
     call: ast.Call
 
 
@@ -169,7 +168,7 @@ def _paths_of_try(statement: ast.Try | ast.TryStar) -> _OpenPaths:
     return _OpenPaths(paths.reaches_end, paths.breaks or last.breaks, paths.returns or last.returns)
 
 
-def _attributes_of(name: str, function: _Function) -> set[str] | None:
+def _attributes_of(name: str, function: AnyFunction) -> set[str] | None:
     """Return the attributes of a variable that a function uses; None where it is used otherwise."""
     used = set[str]()
     owners = set[ast.AST]()
@@ -187,7 +186,7 @@ def _attributes_of(name: str, function: _Function) -> set[str] | None:
 def loops_without_transforms(
     code: Code,
     registered: Sequence[RegisteredGoal],
-    methods: Mapping[tuple[Location | None, str], _Function],
+    methods: Mapping[tuple[Location | None, str], AnyFunction],
 ) -> Iterator[CodeFault]:
     """Yield loops of goals that look up transforms, which one thread does not read meanwhile."""
     own_methods = {name: function for (_, name), function in methods.items()}
@@ -207,7 +206,7 @@ def loops_without_transforms(
                 break
 
 
-def _looks_up(loop: ast.While, methods: Mapping[str, _Function]) -> bool:
+def _looks_up(loop: ast.While, methods: Mapping[str, AnyFunction]) -> bool:
     """Return whether a loop looks up a transform, itself or by a method that it calls."""
     nodes: list[ast.AST] = walk(loop)
     for node in [*nodes]:
@@ -223,7 +222,9 @@ def _looks_up(loop: ast.While, methods: Mapping[str, _Function]) -> bool:
 
 
 def answers_for_results(
-    code: Code, parts: Sequence[CodePart], methods: Mapping[tuple[Location | None, str], _Function]
+    code: Code,
+    parts: Sequence[CodePart],
+    methods: Mapping[tuple[Location | None, str], AnyFunction],
 ) -> Iterator[CodeFault]:
     """Yield fields of a result that are read of the answer, which has it as its field `result`."""
     callbacks: dict[tuple[Location | None, str], set[bool]] = {}
@@ -259,7 +260,7 @@ def _asks_for_result(node: ast.expr) -> bool:
     return False
 
 
-def _wrong_fields(code: Code, function: _Function) -> Iterator[CodeFault]:
+def _wrong_fields(code: Code, function: AnyFunction) -> Iterator[CodeFault]:
     """Yield the fields that the callback of a result reads of `future.result()`."""
     names = [parameter.arg for parameter in function.args.args if parameter.arg != "self"]
     if len(names) != 1:

@@ -16,10 +16,10 @@ from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argumen
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import dotted, last_name
-from grader.ros.python.parse import Code, own_nodes
+from grader.ros.python.parse import AnyFunction, Code, own_nodes
 from grader.ros.python.walking import walk
 
-_Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+_Function = AnyFunction | ast.Lambda
 
 
 class _CallbackRow(NamedTuple):
@@ -230,6 +230,6 @@ def _only_function(scope: _Scope, name: str) -> _Function | None:
     if len(binders) != 1 or binders[0] not in scope.nodes:
         return None
     [function] = binders
-    if not isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef) or function.decorator_list:
+    if not isinstance(function, AnyFunction) or function.decorator_list:
         return None
     return function

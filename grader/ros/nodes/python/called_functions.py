@@ -10,7 +10,7 @@ from grader.ros.nodes.python.python_calls import ArgumentKind, Written, WrongCal
 from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
 from grader.ros.python.bindings import names_bound
 from grader.ros.python.constants import dotted, last_name
-from grader.ros.python.parse import Code
+from grader.ros.python.parse import AnyFunction, Code
 from grader.ros.python.walking import walk
 
 _PLAIN_NODES = ("rclpy.Node", "rclpy.node.Node")
@@ -56,7 +56,7 @@ class CalledFunctions:
         """Keep the names that a node binds, and its calls if it is a class."""
         if isinstance(node, ast.arg):
             self._rebound.add(node.arg)
-        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        elif isinstance(node, AnyFunction | ast.ClassDef):
             self._defined.add(node.name)
         if isinstance(node, ast.ClassDef):
             self._add_class(node)
@@ -216,7 +216,7 @@ def count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
 
 def names_bound_by(node: ast.stmt) -> set[str]:
     """Return the names that a statement in the body of a class binds."""
-    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+    if isinstance(node, AnyFunction | ast.ClassDef):
         return {node.name}
     return names_bound(walk(node))
 

@@ -51,7 +51,7 @@ from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_pass
 from grader.ros.nodes.python.undefined_names import undefined_names
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import binds_unseen, constant_in, dotted, last_name
-from grader.ros.python.parse import Code, every_node, position_of
+from grader.ros.python.parse import AnyFunction, Code, every_node, position_of
 from grader.ros.python.values import QualifiedName
 from grader.ros.python.walking import children, walk
 
@@ -354,9 +354,7 @@ class _Search:
     def _at(self, node: ast.expr | ast.stmt) -> Location:
         return self._code.at(node)
 
-    def _function(
-        self, node: ast.expr, part: CodePart
-    ) -> ast.FunctionDef | ast.AsyncFunctionDef | None:
+    def _function(self, node: ast.expr, part: CodePart) -> AnyFunction | None:
         """Return the function or own method that an expression names."""
         name = dotted(node)
         if name.startswith("self."):
@@ -459,7 +457,7 @@ class _Search:
             names.update(node.name for node in other.classes.values())
         return names
 
-    def _callback(self, registered: _Registered) -> ast.FunctionDef | ast.AsyncFunctionDef | None:
+    def _callback(self, registered: _Registered) -> AnyFunction | None:
         """Return the function that surely is given; None if it may be another one."""
         if not self._is_of_rclpy(registered.call, registered.part):
             return None
@@ -491,7 +489,7 @@ class _Search:
                 )
 
     def _wrong_responses(
-        self, function: ast.FunctionDef | ast.AsyncFunctionDef, registered: _Registered
+        self, function: AnyFunction, registered: _Registered
     ) -> Iterator[CodeFault]:
         """Yield where the callback of a service certainly returns something else."""
         for statement in _own_statements(function.body):
@@ -539,7 +537,7 @@ class _Search:
         bound = count_bound(every_node(self._code.tree) if made else ())
         return {name for name in made if bound[name.rpartition(".")[2]] == made.count(name)}
 
-    def _loops(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[CodeFault]:
+    def _loops(self, function: AnyFunction) -> Iterator[CodeFault]:
         """Yield the loops of a callback that do nothing until another callback has run."""
         for node in walk(function):
             if not isinstance(node, ast.While) or not _only_waits(node.body):
@@ -552,9 +550,7 @@ class _Search:
                 )
                 yield CodeFault("callback-wait", message, self._at(node), is_certain=False)
 
-    def _are_set_elsewhere(
-        self, names: Collection[str], function: ast.FunctionDef | ast.AsyncFunctionDef
-    ) -> bool:
+    def _are_set_elsewhere(self, names: Collection[str], function: AnyFunction) -> bool:
         """Return whether only other functions set what a function waits for.
 
         What another library is given may set it in a thread of its own.
@@ -580,7 +576,7 @@ class _Search:
         functions: dict[str, list[ast.AST]] = {}
         given = list[ast.AST]()
         for node in every_node(self._code.tree):
-            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            if isinstance(node, AnyFunction):
                 functions.setdefault(node.name, []).append(node)
                 given += [node] if node.decorator_list else []
             elif isinstance(node, ast.Call):
@@ -594,7 +590,7 @@ class _Search:
                 given += functions.get(dotted(node).removeprefix("self."), ())
         return _with_callees(given, functions)
 
-    def _sleeping(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[CodeFault]:
+    def _sleeping(self, function: AnyFunction) -> Iterator[CodeFault]:
         """Yield where a callback first sleeps, in a module with another callback."""
         text = self._code.source.text
         has_others = len(self._registered) > 1 or any(word in text for word in _OTHER_CALLBACKS)
@@ -633,7 +629,7 @@ class _Search:
             )
             yield CodeFault("callback-wait", message, self._at(call))
 
-    def _reached(self) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
+    def _reached(self) -> Iterator[AnyFunction]:
         """Yield the callbacks of timers, subscriptions and services, and own methods they call."""
         seen = set[ast.AST]()
         pending = [registered for registered in self._registered if registered.by != "ActionServer"]
@@ -965,7 +961,7 @@ def _calls_in(function: ast.AST) -> Iterator[ast.Call]:
     pending = children(function)
     while pending:
         node = pending.pop()
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+        if isinstance(node, AnyFunction | ast.Lambda):
             continue
         if isinstance(node, ast.Call):
             yield node
@@ -979,16 +975,14 @@ def _own_statements(body: Sequence[ast.stmt]) -> Iterator[ast.stmt]:
         node = pending.pop()
         if isinstance(node, ast.stmt):
             yield node
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        if isinstance(node, AnyFunction | ast.ClassDef):
             continue
         for inner in reversed(children(node)):
             if isinstance(inner, ast.stmt | ast.ExceptHandler | ast.match_case):
                 pending.append(inner)
 
 
-def _lacks_arguments(
-    call: ast.Call, function: ast.FunctionDef | ast.AsyncFunctionDef, *, is_method: bool
-) -> bool:
+def _lacks_arguments(call: ast.Call, function: AnyFunction, *, is_method: bool) -> bool:
     """Return whether a call certainly gives a function too few arguments."""
     if any(isinstance(argument, ast.Starred) for argument in call.args) or any(
         keyword.arg is None for keyword in call.keywords
@@ -999,7 +993,7 @@ def _lacks_arguments(
     return len(call.args) + len(call.keywords) < needed - is_method
 
 
-def _no_response(value: ast.expr, function: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
+def _no_response(value: ast.expr, function: AnyFunction) -> str:
     """Return the text of a value that certainly is no response of a service; empty for others.
 
     It is a literal or a comparison, the request, or a field of the response.
@@ -1020,7 +1014,7 @@ def _no_response(value: ast.expr, function: ast.FunctionDef | ast.AsyncFunctionD
 
 
 def _unbound_parameters(
-    function: ast.FunctionDef | ast.AsyncFunctionDef,
+    function: AnyFunction,
 ) -> tuple[str | None, str | None]:
     """Return the request and the response of a callback; None for both if it binds one anew."""
     names = [parameter.arg for parameter in function.args.args]
@@ -1037,7 +1031,7 @@ def _is_generator(function: ast.AST) -> bool:
     return any(isinstance(node, ast.Yield | ast.YieldFrom) for node in walk(function))
 
 
-def _gives_value(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+def _gives_value(function: AnyFunction) -> bool:
     if isinstance(function, ast.AsyncFunctionDef) or _is_generator(function):
         return True
     returns = [inner for inner in _own_statements(function.body) if isinstance(inner, ast.Return)]
@@ -1045,8 +1039,8 @@ def _gives_value(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
 
 
 def _ends_without_value(
-    function: ast.FunctionDef | ast.AsyncFunctionDef,
-) -> Iterator[tuple[ast.FunctionDef | ast.AsyncFunctionDef | ast.Return, bool]]:
+    function: AnyFunction,
+) -> Iterator[tuple[AnyFunction | ast.Return, bool]]:
     """Yield where a function ends without a value: a return, or the function itself for its end.
 
     With each whether it certainly gets there on some path.

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.nodes.python.called_functions import methods_of, names_bound_by
 from grader.ros.python.constants import dotted
-from grader.ros.python.parse import Code
+from grader.ros.python.parse import AnyFunction, Code
 from grader.ros.python.walking import children, walk
 
 # Methods of rclpy's Node that read attributes which its constructor sets: rclpy/node.py of
@@ -66,7 +66,7 @@ def missing_init(code: Code, owner: ast.ClassDef, bases: Collection[str]) -> Ite
 
 def _is_made_elsewhere(
     owner: ast.ClassDef,
-    constructor: ast.FunctionDef | ast.AsyncFunctionDef,
+    constructor: AnyFunction,
     bases: Collection[str],
 ) -> bool:
     """Return whether something besides a constructor may make the node."""
@@ -78,7 +78,7 @@ def _is_made_elsewhere(
     )
 
 
-def _statements_before(constructor: ast.FunctionDef | ast.AsyncFunctionDef) -> list[ast.stmt]:
+def _statements_before(constructor: AnyFunction) -> list[ast.stmt]:
     """Return the statements before that with super().__init__(); all where there is none."""
     for position, statement in enumerate(constructor.body):
         if initialises(statement):
@@ -86,7 +86,7 @@ def _statements_before(constructor: ast.FunctionDef | ast.AsyncFunctionDef) -> l
     return constructor.body
 
 
-def _may_be_made(owner: ast.ClassDef, constructor: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+def _may_be_made(owner: ast.ClassDef, constructor: AnyFunction) -> bool:
     """Return whether something else may make the node: a decorator, or a function that gets it."""
     if owner.decorator_list or constructor.decorator_list or "__new__" in methods_of(owner):
         return True

@@ -67,6 +67,7 @@ from grader.ros.python.constants import Constants, constant_in, dotted, offset_o
 from grader.ros.python.evaluation import record
 from grader.ros.python.parse import (
     START,
+    AnyFunction,
     Code,
     every_node,
     location_in,
@@ -483,14 +484,11 @@ class _Module:
         body = own_nodes(code.tree)
         scope = self._constants.bound(body, Scope({}))
         for part in body:
-            if (
-                isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
-                and part.name in scope.names
-            ):
+            if isinstance(part, AnyFunction | ast.ClassDef) and part.name in scope.names:
                 scope.names[part.name] = QualifiedName(f"{name}.{part.name}")
         self._parts.append(CodePart("", code.tree, _find_calls(body), scope))
         for part in body:
-            if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
+            if isinstance(part, AnyFunction):
                 inner = walk(part)
                 self._parts.append(
                     CodePart(
@@ -519,7 +517,7 @@ class _Module:
         constants = self._constants.bound(nodes_of_class, Scope({}, scope)).names
         attributes = Scope({f"self.{name}": value for name, value in constants.items()}, scope)
         for method in nodes_of_class:
-            if not isinstance(method, ast.FunctionDef | ast.AsyncFunctionDef):
+            if not isinstance(method, AnyFunction):
                 continue
             nodes = walk(method)
             local = self._constants.bound(nodes, Scope({}, attributes))
@@ -938,7 +936,7 @@ def _parameters_given(function: ast.AST, call: ast.Call) -> Iterator[tuple[str, 
 
     A parameter that is bound again, or that an inner function has as well, is not among them.
     """
-    assert isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef)
+    assert isinstance(function, AnyFunction)
     bound: Counter[str] = Counter()
     for node in walk(function):
         if isinstance(node, ast.arg):

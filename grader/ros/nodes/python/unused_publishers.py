@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from grader.base.source import Location
 from grader.ros.python.constants import binds_unseen, dotted, last_name
-from grader.ros.python.parse import Code, every_node
+from grader.ros.python.parse import AnyFunction, Code, every_node
 from grader.ros.python.walking import walk
 
 _OPENING = ("create_publisher", "create_lifecycle_publisher")
@@ -44,7 +44,7 @@ def _read_names(nodes: Iterable[ast.AST]) -> set[str]:
 def _unused_in(code: Code, read: set[str]) -> Iterator[Location]:
     """Yield where a module opens them; `read` are the attributes that the package reads."""
     for function in every_node(code.tree):
-        if not isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
+        if not isinstance(function, AnyFunction):
             continue
         inside = walk(function)
         variables = {
