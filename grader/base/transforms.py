@@ -4,7 +4,7 @@ At 4 x 4 a product of Python floats costs no more than a numpy call, and saves t
 `numpy.asarray(transform)` gives the homogeneous matrix.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import acos, atan2, cos, degrees, hypot, inf, nan, sin
 from typing import TYPE_CHECKING, Any
@@ -190,13 +190,15 @@ def add_up(numbers: Iterable[float]) -> float:
     return total
 
 
-def middle_of(weighted: Sequence[tuple[float, Vector]]) -> Vector:
+def middle_of(weighted: Iterable[tuple[float, Vector]]) -> Vector:
     """Return the mean of points, each with its weight."""
-    total = add_up(weight for weight, _ in weighted)
-    x, y, z = (
-        add_up(weight * point[axis] for weight, point in weighted) / total for axis in range(3)
-    )
-    return (x, y, z)
+    total = x = y = z = 0.0
+    for weight, point in weighted:
+        total += weight
+        x += weight * point[0]
+        y += weight * point[1]
+        z += weight * point[2]
+    return (x / total, y / total, z / total)
 
 
 def turn_between(one: Rotation, other: Rotation) -> float:

@@ -15,7 +15,7 @@ from grader.ros.known.releases import Release
 
 PYTHON_NAMES_FILE = Path(__file__).with_suffix(".toml")
 MODULES = ""  # the key of the names of all modules
-_DEFAULT: tuple[Release, ...] = ("jazzy",)
+_DEFAULT = ("jazzy",)
 
 
 @cache

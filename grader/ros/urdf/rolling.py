@@ -162,7 +162,7 @@ class Course(NamedTuple):
 
 def mean_of(points: Iterable[Vector]) -> Vector:
     """Return the mean of points."""
-    return middle_of([(1.0, point) for point in points])
+    return middle_of((1.0, point) for point in points)
 
 
 def _held_directions(wheel: DrivenWheel, up: Vector) -> list[Vector]:
