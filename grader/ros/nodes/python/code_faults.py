@@ -720,6 +720,8 @@ class _Search:
         calls = [call for part in self._module.parts if part.of is None for call in part.calls]
         by_name = {dotted(call.func): call for call in reversed(calls)}
         init, spin = by_name.get("rclpy.init"), by_name.get("rclpy.spin")
+        if spin is None and "rclpy.executors" in self._code.source.text:
+            spin = next((call for call in calls if last_name(call.func) == "add_node"), None)
         if init is not None and self._registered:
             yield from self._unspun(init, reached)
         if spin is not None and not self._is_initialised(names):

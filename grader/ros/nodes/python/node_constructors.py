@@ -5,7 +5,8 @@ from collections.abc import Collection, Iterator
 
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.nodes.python.called_functions import methods_of, names_bound_by
-from grader.ros.python.constants import dotted
+from grader.ros.nodes.python.rclpy_names import HARMLESS
+from grader.ros.python.constants import dotted, last_name
 from grader.ros.python.parse import AnyFunction, Code
 from grader.ros.python.walking import children, walk
 
@@ -91,7 +92,7 @@ def _may_be_made(owner: ast.ClassDef, constructor: AnyFunction) -> bool:
     if owner.decorator_list or constructor.decorator_list or "__new__" in methods_of(owner):
         return True
     for node in walk(constructor):
-        if isinstance(node, ast.Call):
+        if isinstance(node, ast.Call) and last_name(node.func) not in HARMLESS:
             given = [*node.args, *(keyword.value for keyword in node.keywords)]
             if "self" in map(dotted, given):
                 return True

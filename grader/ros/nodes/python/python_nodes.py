@@ -51,7 +51,7 @@ from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bind
 from grader.ros.nodes.python.inherited_nodes import OwnClass, with_inherited
 from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
 from grader.ros.nodes.python.message_faults import wrong_fields
-from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
+from grader.ros.nodes.python.rclpy_names import HARMLESS, NODE_CLASSES
 from grader.ros.nodes.python.running_code import assumed_fixes
 from grader.ros.nodes.python.unused_publishers import unused_publishers
 from grader.ros.package.entry_points import (
@@ -111,24 +111,6 @@ _LOOKUPS = {
     "lookup_transform_full_async": 2,
 }
 _METHODS = frozenset({*_KINDS, *_READS, *_DECLARES, "create_timer"})
-# What may be given a node, and declares and opens nothing but actions and the topics of tf2.
-_HARMLESS = frozenset(
-    {
-        "spin",
-        "spin_once",
-        "spin_until_future_complete",
-        "add_node",
-        "remove_node",
-        "super",
-        "isinstance",
-        "print",
-        "hasattr",
-        "getattr",
-        "TransformListener",
-        "TransformBroadcaster",
-        "StaticTransformBroadcaster",
-    }
-)
 # Makes a node in the same process by itself, for which launch gives parameters: moveit_py of
 # moveit2.
 _MAKES_A_NODE = ("moveit.planning.MoveItPy", "moveit.MoveItPy")
@@ -840,7 +822,7 @@ class _Module:
                 self._facts[at] += self._filtered(part, call)
             elif name in _ACTIONS:
                 self._facts[at] += self._action(part, call, _ACTIONS[name])
-            elif name not in _HARMLESS:
+            elif name not in HARMLESS:
                 self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
 
     def _nodes_given_to(self, function: str) -> Collection[Location | None]:

@@ -23,6 +23,15 @@ CALLBACKS: Mapping[str, tuple[int, str]] = {
     "create_service": (2, "callback"),
     "ActionServer": (3, "execute_callback"),
 }
+# What may be given a node, and declares and opens nothing but actions and the topics of tf2.
+HARMLESS = frozenset(
+    {
+        *("spin", "spin_once", "spin_until_future_complete", "add_node", "remove_node"),
+        *("super", "isinstance", "print", "hasattr", "getattr"),
+        *("TransformListener", "TransformBroadcaster", "StaticTransformBroadcaster"),
+        *("ActionServer", "ActionClient"),
+    }
+)
 # Packages that neither initialise rclpy nor spin a node, besides those of messages and the standard
 # library; tf2_ros.TransformListener does if it is asked to, with the argument spin_thread.
 _PASSIVE = frozenset(

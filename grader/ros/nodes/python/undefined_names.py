@@ -73,7 +73,9 @@ def _define(code: Code, name: str, at: Position, bound: Collection[str]) -> Fixe
             if is_import and getattr(first, "module", "") != "__future__":
                 return edits.add_before(first, statement)
         return NO_FIXES
-    meant = near(name, bound)
+    # A class is no variable: Marker and marker.
+    is_class = name[:1].isupper()
+    meant = near(name, [other for other in bound if other[:1].isupper() == is_class])
     if meant is None:
         return NO_FIXES
     location = location_in(code.source, at)
