@@ -119,9 +119,7 @@ def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
 
 
 def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
-    return sorted(
-        ((source.offset(edit.line, edit.column), edit) for edit in edits), key=lambda pair: pair[0]
-    )
+    return sorted(((source.start_offset(edit), edit) for edit in edits), key=lambda pair: pair[0])
 
 
 def format_numbers(values: Iterable[float]) -> str:

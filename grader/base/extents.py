@@ -76,7 +76,7 @@ def end_of(source: Source, where: Location) -> tuple[int, int]:
     Both count from 1, columns in characters, as in a Location. It is the place itself where nothing
     begins there, as at the end of a line.
     """
-    start = source.offset(where.line, where.column)
+    start = source.start_offset(where)
     end = end_offset(source, start)
     if end <= start:
         return where.line, where.column

@@ -135,6 +135,10 @@ class Source:
             start += 1
         return start + column - 1
 
+    def start_offset(self, at: Location | Edit) -> int:
+        """Return the character offset of a location, or of what an edit replaces."""
+        return self.offset(at.line, at.column)
+
     def edit(self, start: int, end: int, new: str) -> Edit:
         """Return the edit that replaces the text between two offsets."""
         place = self.at(start)

@@ -72,7 +72,7 @@ def _name_edits(
     """Yield the changes of the compared names that are in a file."""
     for fact, edit in names:
         if edit.path == source.path:
-            start = source.offset(edit.line, edit.column)
+            start = source.start_offset(edit)
             family = "name misspelt" if isinstance(fact, Use) else "definition renamed"
             yield MutantEdit(family, f"{label} {edit.old}", start, start + len(edit.old), edit.new)
 
@@ -109,7 +109,7 @@ def _bridge_changes(source: Source, label: str, root: YamlNode) -> Iterator[Muta
 def _start_of_item(source: Source, row: YamlNode) -> int | None:
     """Return the offset of the dash before a table in a list; None if it is written in braces."""
     at = row.key_location(str(next(iter(row.value))))
-    first = source.offset(at.line, at.column)
+    first = source.start_offset(at)
     dash = source.text.rfind("-", 0, first)
     return dash if dash >= 0 and not source.text[dash + 1 : first].strip() else None
 
@@ -134,7 +134,7 @@ def _node_changes(
         yield from _node_changes(source, f"{label}{number}.", item, seen)
     for key, inner in node.value.items() if isinstance(node.value, dict) else ():
         at = node.key_location(key)
-        start = source.offset(at.line, at.column)
+        start = source.start_offset(at)
         if isinstance(inner.value, dict) and source.text.startswith(key, start):
             yield MutantEdit(
                 "name misspelt", f"{label}{key}", start, start + len(key), misspelt(key)

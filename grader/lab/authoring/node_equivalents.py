@@ -250,7 +250,7 @@ def _name_span(text: str, path: str, endpoint: Endpoint) -> tuple[int, int] | No
     name = endpoint.name
     if name is None or endpoint.kind not in _TOPICS_AND_SERVICES or not _RELATIVE.fullmatch(name):
         return None
-    start = Source(path, text).offset(endpoint.location.line, endpoint.location.column)
+    start = Source(path, text).start_offset(endpoint.location)
     quoted_name = re.compile(rf"([\"']){re.escape(name)}\1")
     match = quoted_name.search(text, start, start + _MAX_CALL)
     if match is None or ";" in text[start : match.start()]:

@@ -116,7 +116,7 @@ def _misspelt_at(source: Source, label: str, at: Location, name: str) -> Iterato
     """Yield that a name is misspelt where it is used."""
     if at.path != source.path:
         return
-    start = source.offset(at.line, at.column)
+    start = source.start_offset(at)
     if source.text.startswith(name, start):
         end = start + len(name)
         yield MutantEdit("name misspelt", f"{label} {name}", start, end, misspelt(name))

@@ -137,7 +137,7 @@ def _inside(
         if (
             (where.path, where.calls) == (place.path, place.calls)
             and source.text.startswith(_INSIDE[problem.kind], offsets.start)
-            and source.offset(where.line, where.column) in offsets
+            and source.start_offset(where) in offsets
         ):
             yield problem
 
@@ -149,7 +149,7 @@ def _element_offsets(place: Location, source: Source, *, is_of_link: bool = Fals
     """
     if place.path != source.path:
         return range(0)
-    text, at = source.text, source.offset(place.line, place.column)
+    text, at = source.text, source.start_offset(place)
     start = text.rfind("<", 0, at + 1)
     if is_of_link and text.startswith("<visual", start):
         start = at = text.rfind("<link", 0, start)

@@ -424,7 +424,7 @@ def _whole_lines(edit: Edit, submission: Submission) -> Edit:
     source = Source(edit.path, text)
     last_line = edit.line + edit.old.count("\n")
     start, end = source.offset(edit.line, 1), source.offset(last_line + 1, 1)
-    at = source.offset(edit.line, edit.column)
+    at = source.start_offset(edit)
     before = text[start:end].splitlines(keepends=True)
     text_after = f"{text[start:at]}{edit.new}{text[at + len(edit.old) : end]}"
     after = text_after.splitlines(keepends=True)

@@ -146,7 +146,7 @@ def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterat
         new = str(float(meant))
     written = re.escape(str(value))
     plain = re.compile(rf"(?<![\w-]){key}[\"']?\s*:\s*[\"']?({written})(?!\w)", re.IGNORECASE)
-    offset = source.offset(at.line, at.column)
+    offset = source.start_offset(at)
     for place in plain.finditer(source.text):
         if place.end() > offset:
             yield Proposal((source.edit(*place.span(1), new),), f"the value of `{name}`")

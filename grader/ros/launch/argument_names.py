@@ -80,7 +80,7 @@ def _span_of_text(source: Source, value: ast.expr) -> tuple[int, int] | None:
     if not isinstance(value, ast.Constant) or not isinstance(value.value, str):
         return None
     at = location_in(source, position_of(value))
-    opened = _OPENING.match(source.text, source.offset(at.line, at.column))
+    opened = _OPENING.match(source.text, source.start_offset(at))
     if opened is None:
         return None
     end = opened.end() + len(value.value)
@@ -94,7 +94,7 @@ def _in_xml(data: bytes, source: Source) -> Iterator[_ArgumentName]:
         for element in file.root.iter("arg", "let"):
             parent = element.getparent()
             at = file.location(element)
-            start = source.offset(at.line, at.column)
+            start = source.start_offset(at)
             name = markup.attribute(source.text, start, "name")
             if name is not None and (parent is None or parent.tag != "include"):
                 yield _ArgumentName(source.text[slice(*name.value)], True, *name.value)

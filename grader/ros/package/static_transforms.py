@@ -167,7 +167,7 @@ def _read_frame(node: StartedNode, source_of: SourceOf) -> _StaticFrame | None:
         return None
     at = node.location
     source = source_of(at.path) or Source(at.path, "")
-    location = LazyLocation(Source(at.path, source.text, [source.offset(at.line, at.column)]), 0)
+    location = LazyLocation(Source(at.path, source.text, [source.start_offset(at)]), 0)
     if None in words or node.when is None:
         what = "whether it is published" if node.when is None else "its place"
         reason = f"{what} is known only at run time ({at.path}, line {at.line})"

@@ -21,6 +21,6 @@ def ends_of_calls(source: Source) -> Mapping[tuple[int, int], int]:
             place = location_in(source, position_of(node))
             last = Position(node.end_lineno or 0, (node.end_col_offset or 0) + 1)
             end = location_in(source, last)
-            key, offset = (place.line, place.column), source.offset(end.line, end.column)
+            key, offset = (place.line, place.column), source.start_offset(end)
             ends[key] = max(offset, ends.get(key, 0))
     return ends

@@ -17,7 +17,7 @@ def read_as(
 ) -> Slip:
     """Return the slip of a word that is written in a node and stands for another one."""
     source, at = code.source, code.at(node)
-    start = source.text.find(written, source.offset(at.line, at.column))
+    start = source.text.find(written, source.start_offset(at))
     edit = source.edit(start, start + len(written), meant)
     assumption = f"{written} is read as {meant}"
     return Slip((edit,), reaction, assumption, source.at(start), is_refused)

@@ -121,7 +121,7 @@ def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
 
     Of edits that overlap, the first counts.
     """
-    placed = [(source.offset(edit.line, edit.column), edit) for edit in edits]
+    placed = [(source.start_offset(edit), edit) for edit in edits]
     removed: dict[str, int] = {}  # texts that are removed, and where each begins
     for start, edit in placed:
         if not edit.new:

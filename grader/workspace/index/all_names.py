@@ -151,7 +151,7 @@ def _is_of_every_robot(fact: Definition | Use, source: Source) -> bool:
     """Return whether a fact is a frame that every robot may have, said of its first link."""
     if fact.kind != "frame" or fact.name not in shared_names().frames:
         return False
-    start = source.offset(fact.location.line, fact.location.column)
+    start = source.start_offset(fact.location)
     return source.text.startswith("<link", start)
 
 

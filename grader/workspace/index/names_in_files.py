@@ -64,7 +64,7 @@ def _keys_with_parameters(tree: YamlNode) -> Iterator[tuple[str, YamlNode]]:
 
 def _name_of_key(mapping: YamlNode, key: str, kind: str, name: str) -> WrittenName:
     source, at = mapping.source, mapping.key_location(key)
-    start = source.offset(at.line, at.column)
+    start = source.start_offset(at)
     start += int(source.text[start : start + 1] in ("'", '"'))
     end = start + len(key)
     return written_name(source, (end - len(name), end), kind, name, "use")

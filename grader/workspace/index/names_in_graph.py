@@ -258,7 +258,7 @@ class GraphNames:
         name = f"/{end.name.rpartition('/')[2]}"
         if not last.text.endswith(name):
             return None
-        start = source.offset(at.line, at.column)
+        start = source.start_offset(at)
         written = re.compile(rf"{re.escape(last.text)}(?={_QUOTE})")
         match = written.search(source.text, start, call_end(source, start))
         return (match.end() - len(name) + 1, match.end()) if match is not None else None
@@ -404,7 +404,7 @@ def _span_in_code(source: Source, facts: NodeFacts) -> Span | None:
     """Return the span of the name that the code of a node gives it."""
     if not facts.name:
         return None
-    start = source.offset(facts.location.line, facts.location.column)
+    start = source.start_offset(facts.location)
     name = re.escape(facts.name)
     given = re.compile(
         rf"(?:\b__init__|\b(?:Lifecycle)?Node|\bcreate_node|\bmake_shared<[\w:]++>)\s*+[({{]"
@@ -431,7 +431,7 @@ def _texts(full: str) -> Sequence[str]:
 
 def _written_span(source: Source, place: _EndPlace) -> Span | None:
     """Return the span of a name in what begins at its place."""
-    first = source.offset(place.location.line, place.location.column)
+    first = source.start_offset(place.location)
     for text in place.texts:
         span = span_of_name(source, place.location, "topic", text, place.role)
         if span is None or (span[0] < first and not source.path.endswith(_CODE)):
@@ -455,7 +455,7 @@ def _last_part(
 
 def _span_in_argument(source: Source, row: BridgeRow) -> Span | None:
     """Return the span of the topic in the argument of a bridge: /scan@sensor_msgs/..."""
-    start = source.offset(row.location.line, row.location.column)
+    start = source.start_offset(row.location)
     argument = re.compile(rf"{_QUOTE}(?P<topic>/?{re.escape(row.ros)})@")
     match = argument.search(source.text, start, call_end(source, start))
     return match.span("topic") if match is not None else None
@@ -481,7 +481,7 @@ def _spans_of_rule(source: Source, where: Location, rule: Sequence[str]) -> list
     else:
         start_tag = rf"<remap\s++from\s*+=\s*+{_QUOTE}(?P<from>{first}){_QUOTE}\s++"
         pattern = rf"{start_tag}to\s*+=\s*+{_QUOTE}(?P<to>{second}){_QUOTE}"
-    start = source.offset(where.line, where.column)
+    start = source.start_offset(where)
     matches = [*re.finditer(pattern, source.text)]
     end = call_end(source, start)
     inside = [match for match in matches if start <= match.start() < end]

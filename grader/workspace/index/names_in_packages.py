@@ -64,7 +64,7 @@ class PackageNames:
         source = self._source_of(at.path)
         if source is None:
             return
-        start = source.offset(at.line, at.column)
+        start = source.start_offset(at)
         span: Span | None = (start, start + len(name))
         if not source.text.startswith(name, start):
             span = span_of_name(source, at, kind, name, role)
@@ -121,7 +121,7 @@ class PackageNames:
         setup = self._source_of(program.location.path)
         if setup is None or path.endswith(CPP_ENDINGS):
             return
-        start = setup.offset(program.location.line, program.location.column)
+        start = setup.start_offset(program.location)
         used = re.compile(rf"[\w.]++:{name}").search(setup.text, start)
         if used is not None and "\n" not in setup.text[start : used.start()]:
             yield written_name(source, span, "function", used[0], "definition", package.name)
@@ -154,7 +154,7 @@ class PackageNames:
         owner = kind.package or package.name
         if source is None or at is None or kind.name[:1].islower():
             return
-        start = source.offset(at.line, at.column)
+        start = source.start_offset(at)
         written = re.compile(rf"(?:[\w/]++(?<=/))?(?P<name>{re.escape(kind.name)})\b")
         match = written.match(source.text, start)
         if match is not None:
@@ -178,7 +178,7 @@ class PackageNames:
         if source is None or not source.path.endswith(".py"):
             return
         word = re.compile(rf"(?<![\w.\"'])(?:{re.escape(last)})(?![\w\"'])")
-        for match in word.finditer(source.text, source.offset(at.line, at.column)):
+        for match in word.finditer(source.text, source.start_offset(at)):
             yield written_name(source, match.span(), _TYPE, name.replace(".", "/"), "use")
 
     def _file(self, named: PathInFile) -> Iterator[WrittenName]:
@@ -198,7 +198,7 @@ class PackageNames:
             written = None
             if source is not None:
                 at = described.location
-                start = source.offset(at.line, at.column)
+                start = source.start_offset(at)
                 attribute = markup.attribute(source.text, start, "name")
                 written = attribute or markup.attribute(source.text, start, "type")
             if source is not None and written is not None:

@@ -45,5 +45,5 @@ def _in_order(workspace: Workspace, launch: Launch) -> Iterator[StartedName]:
 
 def _whole(source: Source, at: Location) -> Location:
     """Return the place of an action with its end."""
-    end = source.at(call_end(source, source.offset(at.line, at.column)))
+    end = source.at(call_end(source, source.start_offset(at)))
     return at._replace(end_line=end.line, end_column=end.column)

@@ -87,7 +87,7 @@ def span_of_name(source: Source, where: Location, kind: str, name: str, role: Ro
     """
     if (kind, role) == ("node", "definition"):
         kind = _STARTED
-    start = source.offset(where.line, where.column)
+    start = source.start_offset(where)
     if not 0 <= start < len(source.text):
         return None
     if source.path.endswith((".yaml", ".yml", ".rviz")):

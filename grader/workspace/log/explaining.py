@@ -180,7 +180,7 @@ def _has_names(
         source = source_of(place.path) if place is not None else None
         if place is None or source is None:
             continue
-        start = source.offset(place.line, place.column)
+        start = source.start_offset(place)
         end = ends.end_of_element(source, place, start)
         texts += [place.path, source.line(place.line), source.text[start:end]]
     words = "\n".join(texts)

@@ -117,7 +117,7 @@ class NameFixes:
 
         A program may be called as its package: `of_package` says which is meant.
         """
-        start = source.offset(at.line, at.column)
+        start = source.start_offset(at)
         end = self.end_of_element(source, at, start)
         inside = [span for span in _spans(source, word) if start <= span[0] and span[1] <= end]
         if not inside or inside[0][0] <= start + 1:
@@ -148,7 +148,7 @@ class NameFixes:
         inside = self._span_inside(source, at, word)
         if inside is not None:
             return [inside]
-        return _meant(source.text, word, spans, source.offset(at.line, at.column))
+        return _meant(source.text, word, spans, source.start_offset(at))
 
     def _source(self, path: str) -> Source | None:
         """Return the text of a file; None if it cannot be read."""

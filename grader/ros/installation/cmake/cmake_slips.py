@@ -180,4 +180,4 @@ class _CMakeSlips:
 
     def _offset(self, at: Position) -> int:
         location = location_in(self._source, at)
-        return self._source.offset(location.line, location.column)
+        return self._source.start_offset(location)

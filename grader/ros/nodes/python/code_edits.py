@@ -23,7 +23,7 @@ class CodeEdits:
 
     def _offset(self, position: Position) -> int:
         location = location_in(self._source, position)
-        return self._source.offset(location.line, location.column)
+        return self._source.start_offset(location)
 
     def rewrite(self, start: int, end: int, new: str) -> Fixes:
         """Return the fix that writes another text between two offsets."""

@@ -54,7 +54,7 @@ def wrong_fields(
         if used is not None and used.is_absent:
             meant = used.find_meant(find, is_sure=True)
         if used is not None and meant is not None:
-            start = source.offset(use.location.line, use.location.column)
+            start = source.start_offset(use.location)
             fixes = CodeEdits(source).rewrite(start, start + len(used.name), meant)
             message = f"{used.owner} has no {used.noun} {used.name}"
             yield CodeFault("interface-field", message, use.location, fixes=fixes)

@@ -118,7 +118,7 @@ def _entry_slips(package: Package, source: Source) -> Iterator[Slip]:
         fault = entry_fault(package, entry.name)
         if fault is None or fault.meant is None or not fault.is_sure:
             continue
-        start = source.offset(entry.location.line, entry.location.column)
+        start = source.start_offset(entry.location)
         written = re.match(r"[^'\"\n]*", source.text[start:])
         places = [
             match.start()

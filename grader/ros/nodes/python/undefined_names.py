@@ -79,7 +79,7 @@ def _define(code: Code, name: str, at: Position, bound: Collection[str]) -> Fixe
     if meant is None:
         return NO_FIXES
     location = location_in(code.source, at)
-    start = code.source.offset(location.line, location.column)
+    start = code.source.start_offset(location)
     return edits.rewrite(start, start + len(name), meant)
 
 
