@@ -21,9 +21,10 @@ MACROS = ROOT / "submissions/lab6/equivalent-xacro-macros/my_robot/urdf"
 BOX = '<robot name="box"><link name="box"/></robot>'
 
 
-def graded(path: Path) -> dict[str, Any]:
+def graded(path: Path, rubric: object = "lab6") -> dict[str, Any]:
     """Return the JSON report on a submission, without hints."""
-    return dict(json.loads(run(("grade", path, "--format", "json", "--hints", "none")).stdout))
+    words = ("grade", path, "--format", "json", "--hints", "none", "--rubric", rubric)
+    return dict(json.loads(run(words).stdout))
 
 
 def test_ids_and_paths_do_not_depend_on_the_machine(tmp_path: Path) -> None:
@@ -87,9 +88,11 @@ def test_what_python_3_12_added_is_no_failure(
     """ROS 2 Jazzy runs it: a person decides on what is not evaluated, and on all of it where an older Python grades."""
     file = Path(shutil.copytree(PACKAGE, tmp_path / "my_robot")) / path
     file.write_text(file.read_text().replace("import os\n", f"import os\n{code}", 1))
+    lab = Path(shutil.copytree(ROOT / "rubrics/lab6", tmp_path / "lab")) / "rubric.toml"
+    lab.write_text(lab.read_text().replace('distro = "foxy"', 'distro = "jazzy"'))
     found = {
         row["status"]
-        for row in graded(tmp_path)["results"]
+        for row in graded(tmp_path / "my_robot", lab)["results"]
         if row["id"].startswith(("setup", "launch"))
     }
     is_decided = is_evaluated and sys.version_info >= (3, 12)
