@@ -45,11 +45,15 @@ class CalledFunctions:
         self._owners: dict[ast.AST, list[ast.ClassDef]] = {}  # the classes that calls are in
         for node in nodes:
             self._add(node)
-        rebound = self._rebound | self._defined | _names_of_several_imports(nodes)
+        imports = dict[str, str]()
+        lost = self._rebound | self._defined
+        for node in nodes:
+            for name, full in imported_names([node]).items():
+                if imports.setdefault(name, full) != full:
+                    lost.add(name)
         # The names that the module certainly imports, and does not bind to anything else.
-        imports = imported_names(nodes)
-        self._imports = {name: full for name, full in imports.items() if name not in rebound}
-        self._lost = rebound
+        self._imports = {name: full for name, full in imports.items() if name not in lost}
+        self._lost = lost
         self._made = _calls_bound(nodes)
 
     def _add(self, node: ast.AST) -> None:
@@ -194,15 +198,6 @@ def _calls_bound(nodes: Iterable[ast.AST]) -> dict[str, list[ast.Call]]:
             case ast.Assign(targets=[ast.Name() | ast.Attribute() as to], value=ast.Call() as call):
                 made.setdefault(dotted(to), []).append(call)
     return made
-
-
-def _names_of_several_imports(nodes: Iterable[ast.AST]) -> set[str]:
-    """Return the names that imports bind to more than one thing."""
-    names: dict[str, set[str]] = {}
-    for node in nodes:
-        for name, full in imported_names([node]).items():
-            names.setdefault(name, set()).add(full)
-    return {name for name, full_names in names.items() if len(full_names) > 1}
 
 
 def count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
