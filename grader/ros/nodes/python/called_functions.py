@@ -2,12 +2,11 @@
 
 import ast
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
 from grader.ros.known.releases import Release
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.python_calls import ArgumentKind, Written, WrongCall, wrong_call
-from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
 from grader.ros.python.bindings import names_bound
 from grader.ros.python.constants import dotted, last_name
 from grader.ros.python.parse import Code
@@ -34,9 +33,11 @@ class CalledFunctions:
         self,
         code: Code,
         nodes: Sequence[ast.AST],
+        node_classes: Collection[ast.ClassDef],
         releases: Sequence[Release],
     ) -> None:
-        """Search in the nodes of the code."""
+        """Search in all nodes of the code; the classes have no bases but those of rclpy."""
+        self._nodes = node_classes
         self._code, self._releases = code, releases
         self._stored = count_bound(nodes)
         self._rebound, self._defined = {*self._stored}, set[str]()
@@ -66,7 +67,7 @@ class CalledFunctions:
             self._add_class(node)
 
     def _add_class(self, owner: ast.ClassDef) -> None:
-        self._bound_in[owner] = set[str]().union(*map(names_bound_by, owner.body))
+        self._bound_in[owner] = names_in_class(owner)
         self._named.setdefault(owner.name, []).append(owner)
         for node in walk(owner):
             if isinstance(node, ast.Call):
@@ -149,9 +150,8 @@ class CalledFunctions:
 
     def _is_node_class(self, owner: ast.ClassDef, method: str) -> bool:
         """Return whether a class has no bases but those of rclpy, and does not replace a method."""
-        is_plain = not owner.keywords and not owner.decorator_list and bool(owner.bases)
-        names = {self._full_name(base) for base in owner.bases}
-        return is_plain and names <= NODE_CLASSES and not self._is_replaced(method, owner)
+        is_plain = owner in self._nodes and not owner.keywords and not owner.decorator_list
+        return is_plain and not self._is_replaced(method, owner)
 
     def _is_replaced(self, method: str, owner: ast.ClassDef) -> bool:
         """Return whether the module may replace a method of a class of nodes."""
@@ -209,11 +209,15 @@ def count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
     return bound
 
 
-def names_bound_by(node: ast.stmt) -> set[str]:
-    """Return the names that a statement in the body of a class binds."""
-    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-        return {node.name}
-    return names_bound(walk(node))
+def names_in_class(owner: ast.ClassDef) -> set[str]:
+    """Return the names that the body of a class binds."""
+    names = set[str]()
+    for node in owner.body:
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            names.add(node.name)
+        else:
+            names.update(names_bound(walk(node)))
+    return names
 
 
 def methods_of(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:

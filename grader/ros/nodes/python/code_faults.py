@@ -40,7 +40,7 @@ from grader.ros.nodes.python.called_functions import (
     count_bound,
     imported_names,
     made_in,
-    names_bound_by,
+    names_in_class,
 )
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.log_calls import wrong_log_calls
@@ -148,7 +148,7 @@ def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
                     texts.add(text)
                 case ast.ClassDef(bases=[_, *_]) if node not in plain_nodes:
                     # it may define what a class asks for that it is derived from
-                    stored.update(name for inner in node.body for name in names_bound_by(inner))
+                    stored.update(names_in_class(node))
     is_closed = all(is_passive(name) or name.partition(".")[0] in packages for name in imported)
     return _PackageAttributes(stored, texts, may_be_more, is_closed)
 
@@ -234,7 +234,7 @@ def _wrong_calls(
     nodes = every_node(module.code.tree)
     if binds_unseen(nodes):
         return
-    functions = CalledFunctions(module.code, nodes, releases)
+    functions = CalledFunctions(module.code, nodes, module.nodes.values(), releases)
     classes = {*NODE_CLASSES}
     for other in others.values():
         classes.update(f"{other.name}.{node.name}" for node in other.nodes.values())
@@ -320,7 +320,7 @@ class _Search:
         self._module, self._others, self._attributes = module, others, attributes
         self._edits = CodeEdits(module.code.source)
         self._callbacks = CallbackFunctions(module.code, module.classes, attributes.stored)
-        self._code = module.code
+        self._code, self._at = module.code, module.code.at
         self._functions = {
             (part.of, part.name): part.node
             for part in module.parts
@@ -336,9 +336,6 @@ class _Search:
                     given = given_argument(call, *CALLBACKS[name])
                     if given is not None:
                         yield _Registered(name, call, given, part)
-
-    def _at(self, node: ast.expr | ast.stmt) -> Location:
-        return self._code.at(node)
 
     def _find(
         self, node: ast.expr, part: CodePart
@@ -362,7 +359,7 @@ class _Search:
         self, part: CodePart, owner: ast.ClassDef, known: Collection[str], asked: set[str]
     ) -> Iterator[CodeFault]:
         """Yield those of a method, wherever they are used."""
-        own_names = {name for node in owner.body for name in names_bound_by(node)}
+        own_names = names_in_class(owner)
         read: list[ast.Attribute] = []
         for node in certain_nodes(part.node):
             match node:
@@ -758,7 +755,7 @@ class _Search:
         main = next((node for node in tree.body if getattr(node, "name", "") == "main"), None)
         if not isinstance(main, ast.FunctionDef) or not self._module.is_script:
             return
-        if any(map(_acts, tree.body)) or self._is_imported_script():
+        if any(map(_acts, tree.body)) or self._is_imported():
             return
         message = "main() is never called, so the program does nothing"
         space = "\n\n" if text.endswith("\n") else "\n\n\n"
@@ -883,20 +880,9 @@ class _Search:
             return True
         return self._is_imported()
 
-    def _is_imported_script(self) -> bool:
-        """Return whether another script may import this one, which is beside it."""
-        names = set[str]()
-        for other in self._others.values():
-            for imported in other.imports:
-                names.update(imported.split("."))
-        return PurePosixPath(self._module.name).stem in names
-
     def _is_imported(self) -> bool:
-        name = self._module.name
-        others = [other for other in self._others.values() if other.name != name]
-        return any(
-            f"{imported}.".startswith(f"{name}.") for other in others for imported in other.imports
-        )
+        others = [other for other in self._others.values() if other.name != self._module.name]
+        return any(_imports(other, self._module) for other in others)
 
     def _reached_modules(self) -> list[ModuleText] | None:
         """Return the module and the own ones that it imports; None if others may spin a node."""
@@ -928,7 +914,9 @@ def _acts(statement: ast.stmt) -> bool:
 
 def _imports(module: ModuleText, other: ModuleText) -> bool:
     """Return whether a module imports another one, or something in it."""
-    return any(f"{imported}.".startswith(f"{other.name}.") for imported in module.imports)
+    # Scripts lie beside each other, and import each other by the names of their files.
+    name = PurePosixPath(other.name).stem if other.is_script else other.name
+    return any(f"{imported}.".startswith(f"{name}.") for imported in module.imports)
 
 
 def _with_callees(

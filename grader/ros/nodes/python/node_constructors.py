@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator
 
 from grader.base.problems import NO_FIXES
 from grader.ros.nodes.node_facts import CodeFault
-from grader.ros.nodes.python.called_functions import methods_of, names_bound_by
+from grader.ros.nodes.python.called_functions import methods_of, names_in_class
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.rclpy_names import HARMLESS
 from grader.ros.python.constants import dotted, last_name
@@ -54,7 +54,7 @@ def early_uses(
         when = "not called"
         statement = f"super().__init__({node_name})"
         fixes = CodeEdits(code.source).add_first(constructor.body, statement)
-    known = {*replaced, *(name for node in owner.body for name in names_bound_by(node))}
+    known = names_in_class(owner).union(replaced)
     called = None
     for statement_before in _statements_before(constructor):
         called = called or _first_need(statement_before, owner, known)
