@@ -158,9 +158,13 @@ class SynchronisedType(NamedTuple):
 
 
 class CodeFault(NamedTuple):
-    """Why a node stops, or does nothing; it fails no criterion unless it is certain."""
+    """Why a node stops, or does nothing; it fails no criterion unless it is certain.
 
-    rule: str  # the name of a rule of `workspace/rules/code.py`
+    `code_faults` and the readers of C++ find it. `inspect` says it as a finding of its rule, and a
+    grade assumes its first fix where a program certainly runs the code (`running_code`).
+    """
+
+    rule: str  # the name of a rule, most of `workspace/rules/code.py`
     message: str
     location: Location
     related: Location | None = None

@@ -16,6 +16,7 @@ from grader.base.reuse import reuse
 from grader.base.source import Location, Source
 from grader.ros.known.python_names import python_version, shared_message
 from grader.ros.known.releases import Release
+from grader.ros.python.bindings import bound_names
 from grader.ros.python.walking import children, walk
 
 _SLOW_ENCODINGS = (
@@ -288,17 +289,8 @@ def bound_in(node: ast.FunctionDef | ast.Module) -> frozenset[str]:
             inner.update(walk(part.target))
     names: set[str] = set()
     for part in nodes:
-        match part:
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) if part not in inner:
-                names.add(name)
-            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
-                names.add(part.name)
-            case ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)):
-                names.add(name)
-            case ast.MatchStar(name=str(name)):
-                names.add(name)
-            case ast.alias(name=full, asname=asname):
-                names.add(asname or full.partition(".")[0])
+        if part not in inner and not isinstance(part, ast.arg):
+            names.update(bound_names(part))
     return frozenset(names - declared)
 
 

@@ -154,7 +154,7 @@ def _faults_of(
         if function is None or _is_given_time(called, function, code):
             continue
         is_method = dotted(given).startswith("self.")
-        least, most = _count_parameters(function, is_method=is_method)
+        least, most = count_parameters(function, is_method=is_method)
         if _may_be_called(callback, least, most):
             continue
         name = "the function" if isinstance(function, ast.Lambda) else f"{function.name}()"
@@ -184,7 +184,7 @@ def _say_parameters(least: float, most: float, *, is_method: bool) -> str:
     return f"{int(least)} to {int(most)} arguments{besides}"
 
 
-def _count_parameters(function: _Function, *, is_method: bool) -> tuple[float, float]:
+def count_parameters(function: _Function, *, is_method: bool) -> tuple[float, float]:
     """Return how many arguments without names a function takes at least and at most.
 
     Nothing is enough for one with a parameter that must be given by its name.

@@ -2,12 +2,11 @@
 
 import ast
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
 from grader.ros.known.releases import Release
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.python_calls import ArgumentKind, Written, WrongCall, wrong_call
-from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
 from grader.ros.python.bindings import names_bound
 from grader.ros.python.constants import dotted, last_name
 from grader.ros.python.parse import AnyFunction, Code
@@ -34,9 +33,11 @@ class CalledFunctions:
         self,
         code: Code,
         nodes: Sequence[ast.AST],
+        node_classes: Collection[ast.ClassDef],
         releases: Sequence[Release],
     ) -> None:
-        """Search in the nodes of the code."""
+        """Search in all nodes of the code; the classes have no bases but those of rclpy."""
+        self._nodes = node_classes
         self._code, self._releases = code, releases
         self._stored = count_bound(nodes)
         self._rebound, self._defined = {*self._stored}, set[str]()
@@ -45,11 +46,15 @@ class CalledFunctions:
         self._owners: dict[ast.AST, list[ast.ClassDef]] = {}  # the classes that calls are in
         for node in nodes:
             self._add(node)
-        rebound = self._rebound | self._defined | _names_of_several_imports(nodes)
+        imports = dict[str, str]()
+        lost = self._rebound | self._defined
+        for node in nodes:
+            for name, full in imported_names([node]).items():
+                if imports.setdefault(name, full) != full:
+                    lost.add(name)
         # The names that the module certainly imports, and does not bind to anything else.
-        imports = imported_names(nodes)
-        self._imports = {name: full for name, full in imports.items() if name not in rebound}
-        self._lost = rebound
+        self._imports = {name: full for name, full in imports.items() if name not in lost}
+        self._lost = lost
         self._made = _calls_bound(nodes)
 
     def _add(self, node: ast.AST) -> None:
@@ -62,7 +67,7 @@ class CalledFunctions:
             self._add_class(node)
 
     def _add_class(self, owner: ast.ClassDef) -> None:
-        self._bound_in[owner] = set[str]().union(*map(names_bound_by, owner.body))
+        self._bound_in[owner] = names_in_class(owner)
         self._named.setdefault(owner.name, []).append(owner)
         for node in walk(owner):
             if isinstance(node, ast.Call):
@@ -145,9 +150,8 @@ class CalledFunctions:
 
     def _is_node_class(self, owner: ast.ClassDef, method: str) -> bool:
         """Return whether a class has no bases but those of rclpy, and does not replace a method."""
-        is_plain = not owner.keywords and not owner.decorator_list and bool(owner.bases)
-        names = {self._full_name(base) for base in owner.bases}
-        return is_plain and names <= NODE_CLASSES and not self._is_replaced(method, owner)
+        is_plain = owner in self._nodes and not owner.keywords and not owner.decorator_list
+        return is_plain and not self._is_replaced(method, owner)
 
     def _is_replaced(self, method: str, owner: ast.ClassDef) -> bool:
         """Return whether the module may replace a method of a class of nodes."""
@@ -196,15 +200,6 @@ def _calls_bound(nodes: Iterable[ast.AST]) -> dict[str, list[ast.Call]]:
     return made
 
 
-def _names_of_several_imports(nodes: Iterable[ast.AST]) -> set[str]:
-    """Return the names that imports bind to more than one thing."""
-    names: dict[str, set[str]] = {}
-    for node in nodes:
-        for name, full in imported_names([node]).items():
-            names.setdefault(name, set()).add(full)
-    return {name for name, full_names in names.items() if len(full_names) > 1}
-
-
 def count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
     """Return how often a variable or an attribute is bound."""
     bound: Counter[str] = Counter()
@@ -214,11 +209,15 @@ def count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
     return bound
 
 
-def names_bound_by(node: ast.stmt) -> set[str]:
-    """Return the names that a statement in the body of a class binds."""
-    if isinstance(node, AnyFunction | ast.ClassDef):
-        return {node.name}
-    return names_bound(walk(node))
+def names_in_class(owner: ast.ClassDef) -> set[str]:
+    """Return the names that the body of a class binds."""
+    names = set[str]()
+    for node in owner.body:
+        if isinstance(node, AnyFunction | ast.ClassDef):
+            names.add(node.name)
+        else:
+            names.update(names_bound(walk(node)))
+    return names
 
 
 def methods_of(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:

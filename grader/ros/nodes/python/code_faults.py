@@ -32,6 +32,7 @@ from grader.ros.nodes.python.action_faults import (
 from grader.ros.nodes.python.branches import calls_in_branches, program_name
 from grader.ros.nodes.python.callback_parameters import (
     CallbackFunctions,
+    count_parameters,
     wrong_callbacks,
 )
 from grader.ros.nodes.python.called_functions import (
@@ -39,13 +40,12 @@ from grader.ros.nodes.python.called_functions import (
     count_bound,
     imported_names,
     made_in,
-    methods_of,
-    names_bound_by,
+    names_in_class,
 )
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.log_calls import wrong_log_calls
 from grader.ros.nodes.python.message_faults import wrong_imports
-from grader.ros.nodes.python.node_constructors import early_uses, initialises, missing_init
+from grader.ros.nodes.python.node_constructors import early_uses
 from grader.ros.nodes.python.parameter_values import parameters_as_values
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
 from grader.ros.nodes.python.undefined_names import undefined_names
@@ -148,7 +148,7 @@ def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
                     texts.add(text)
                 case ast.ClassDef(bases=[_, *_]) if node not in plain_nodes:
                     # it may define what a class asks for that it is derived from
-                    stored.update(name for inner in node.body for name in names_bound_by(inner))
+                    stored.update(names_in_class(node))
     is_closed = all(is_passive(name) or name.partition(".")[0] in packages for name in imported)
     return _PackageAttributes(stored, texts, may_be_more, is_closed)
 
@@ -164,8 +164,7 @@ def code_faults(
     `others` are all modules of the package, by their names, and `attributes` those of all of
     them. Calls are those of the given releases, or of any that are known.
     """
-    edits = CodeEdits(module.code.source)
-    search = _Search(module, others, attributes, edits)
+    search = _Search(module, others, attributes)
     yield from undefined_names(module.code)
     yield from wrong_imports(module.code)
     yield from search.uncalled_main()
@@ -175,7 +174,7 @@ def code_faults(
     yield from search.without_response()
     yield from search.waiting_callbacks()
     yield from search.of_programs()
-    yield from _early_uses(module, others, attributes, edits)
+    yield from _early_uses(module, others, attributes)
     yield from _wrong_calls(module, others, releases or RELEASES)
     yield from wrong_log_calls(module.code, module.parts)
     yield from parameters_as_values(module.code, module.nodes.values())
@@ -202,29 +201,17 @@ def _certain_fixes(fault: CodeFault) -> list[Fix]:
 
 
 def _early_uses(
-    module: ModuleText,
-    others: Mapping[str, ModuleText],
-    attributes: _PackageAttributes,
-    edits: CodeEdits,
+    module: ModuleText, others: Mapping[str, ModuleText], attributes: _PackageAttributes
 ) -> Iterator[CodeFault]:
-    """Yield what constructors of nodes use before the node is made."""
+    """Yield what constructors of nodes use before the node is made, or without that."""
     bases = set[str]()
-    for other in (module, *others.values()):
+    for other in others.values():
         for owner in other.classes.values():
             bases.update(map(last_name, owner.bases))
-    spun = _find_spun(module)
+    code, name, spun = module.code, module.node_name, _find_spun(module)
     for owner in module.nodes.values() if not attributes.may_be_more else ():
-        if len(owner.bases) != 1 or owner.keywords:
-            continue
-        early = [*early_uses(module.code, owner, attributes.stored, bases)]
-        if not early and owner.name in spun:
-            early = [*missing_init(module.code, owner, bases)]
-        constructor = methods_of(owner).get("__init__")
-        fixes = NO_FIXES
-        if constructor is not None and not initialises(constructor):
-            code = f"super().__init__({module.node_name})"
-            fixes = edits.add_first(constructor.body, code)
-        yield from (fault._replace(fixes=fixes) for fault in early)
+        if len(owner.bases) == 1 and not owner.keywords:
+            yield from early_uses(code, owner, name, attributes.stored, bases, spun)
 
 
 def _find_spun(module: ModuleText) -> set[str]:
@@ -247,7 +234,7 @@ def _wrong_calls(
     nodes = every_node(module.code.tree)
     if binds_unseen(nodes):
         return
-    functions = CalledFunctions(module.code, nodes, releases)
+    functions = CalledFunctions(module.code, nodes, module.nodes.values(), releases)
     classes = {*NODE_CLASSES}
     for other in others.values():
         classes.update(f"{other.name}.{node.name}" for node in other.nodes.values())
@@ -329,12 +316,11 @@ class _Search:
         module: ModuleText,
         others: Mapping[str, ModuleText],
         attributes: _PackageAttributes,
-        edits: CodeEdits,
     ) -> None:
         self._module, self._others, self._attributes = module, others, attributes
-        self._edits = edits
+        self._edits = CodeEdits(module.code.source)
         self._callbacks = CallbackFunctions(module.code, module.classes, attributes.stored)
-        self._code = module.code
+        self._code, self._at = module.code, module.code.at
         self._functions = {
             (part.of, part.name): part.node
             for part in module.parts
@@ -351,15 +337,10 @@ class _Search:
                     if given is not None:
                         yield _Registered(name, call, given, part)
 
-    def _at(self, node: ast.expr | ast.stmt) -> Location:
-        return self._code.at(node)
-
-    def _function(self, node: ast.expr, part: CodePart) -> AnyFunction | None:
-        """Return the function or own method that an expression names."""
-        name = dotted(node)
-        if name.startswith("self."):
-            return self._functions.get((part.of, name[5:]))
-        return self._functions.get((None, name))
+    def _find(self, node: ast.expr, part: CodePart) -> AnyFunction | None:
+        """Return the function or own method that an expression surely is."""
+        function = self._callbacks.find(part, node)
+        return None if isinstance(function, ast.Lambda) else function
 
     def undefined_attributes(self) -> Iterator[CodeFault]:
         """Yield the attributes of self that a class of nodes reads, and nothing sets or defines."""
@@ -376,7 +357,7 @@ class _Search:
         self, part: CodePart, owner: ast.ClassDef, known: Collection[str], asked: set[str]
     ) -> Iterator[CodeFault]:
         """Yield those of a method, wherever they are used."""
-        own_names = {name for node in owner.body for name in names_bound_by(node)}
+        own_names = names_in_class(owner)
         read: list[ast.Attribute] = []
         for node in certain_nodes(part.node):
             match node:
@@ -413,11 +394,14 @@ class _Search:
             is_of_rclpy = self._is_of_rclpy(registered.call, registered.part)
             if not is_of_rclpy or not isinstance(registered.given, ast.Call):
                 continue
-            function = self._function(registered.given.func, registered.part)
-            if function is None or function.decorator_list:
+            function = self._find(registered.given.func, registered.part)
+            if function is None:
                 continue
             name = dotted(registered.given.func)
-            if _lacks_arguments(registered.given, function, is_method=name.startswith("self.")):
+            least, _ = count_parameters(function, is_method=name.startswith("self."))
+            given = [*registered.given.args, *registered.given.keywords]
+            are_known = not any(isinstance(each, ast.Starred | ast.keyword) for each in given)
+            if are_known and len(given) < least:
                 what = f"calls {name}() without its arguments"
             elif not _gives_value(function):
                 what = f"is given what {name}() returns, which is None"
@@ -425,7 +409,7 @@ class _Search:
                 continue
             message = f"{registered.by}() {what}; write {name} without the parentheses"
             at, fixes = self._at(registered.given), NO_FIXES
-            if not (registered.given.args or registered.given.keywords):
+            if not given:
                 fixes = self._edits.rewrite(*self._edits.span(registered.given), name)
             yield CodeFault("callback-call", message, at, fixes=fixes)
 
@@ -461,8 +445,7 @@ class _Search:
         """Return the function that surely is given; None if it may be another one."""
         if not self._is_of_rclpy(registered.call, registered.part):
             return None
-        function = self._callbacks.find(registered.part, registered.given)
-        return None if isinstance(function, ast.Lambda) else function
+        return self._find(registered.given, registered.part)
 
     def without_response(self) -> Iterator[CodeFault]:
         """Yield callbacks of services and actions that return nothing."""
@@ -642,7 +625,7 @@ class _Search:
             yield function
             for call in _calls_in(function):
                 if dotted(call.func).startswith("self."):
-                    reached.append((self._function(call.func, part), part))
+                    reached.append((self._find(call.func, part), part))
 
     def _is_concurrent(self) -> bool:
         """Return whether some module may run callbacks at the same time.
@@ -768,7 +751,7 @@ class _Search:
         main = next((node for node in tree.body if getattr(node, "name", "") == "main"), None)
         if not isinstance(main, ast.FunctionDef) or not self._module.is_script:
             return
-        if any(map(_acts, tree.body)) or self._is_imported_script():
+        if any(map(_acts, tree.body)) or self._is_imported():
             return
         message = "main() is never called, so the program does nothing"
         space = "\n\n" if text.endswith("\n") else "\n\n\n"
@@ -893,20 +876,9 @@ class _Search:
             return True
         return self._is_imported()
 
-    def _is_imported_script(self) -> bool:
-        """Return whether another script may import this one, which is beside it."""
-        names = set[str]()
-        for other in self._others.values():
-            for imported in other.imports:
-                names.update(imported.split("."))
-        return PurePosixPath(self._module.name).stem in names
-
     def _is_imported(self) -> bool:
-        name = self._module.name
-        others = [other for other in self._others.values() if other.name != name]
-        return any(
-            f"{imported}.".startswith(f"{name}.") for other in others for imported in other.imports
-        )
+        others = [other for other in self._others.values() if other.name != self._module.name]
+        return any(_imports(other, self._module) for other in others)
 
     def _reached_modules(self) -> list[ModuleText] | None:
         """Return the module and the own ones that it imports; None if others may spin a node."""
@@ -938,7 +910,9 @@ def _acts(statement: ast.stmt) -> bool:
 
 def _imports(module: ModuleText, other: ModuleText) -> bool:
     """Return whether a module imports another one, or something in it."""
-    return any(f"{imported}.".startswith(f"{other.name}.") for imported in module.imports)
+    # Scripts lie beside each other, and import each other by the names of their files.
+    name = PurePosixPath(other.name).stem if other.is_script else other.name
+    return any(f"{imported}.".startswith(f"{name}.") for imported in module.imports)
 
 
 def _with_callees(
@@ -982,17 +956,6 @@ def _own_statements(body: Sequence[ast.stmt]) -> Iterator[ast.stmt]:
         for inner in reversed(children(node)):
             if isinstance(inner, ast.stmt | ast.ExceptHandler | ast.match_case):
                 pending.append(inner)
-
-
-def _lacks_arguments(call: ast.Call, function: AnyFunction, *, is_method: bool) -> bool:
-    """Return whether a call certainly gives a function too few arguments."""
-    if any(isinstance(argument, ast.Starred) for argument in call.args) or any(
-        keyword.arg is None for keyword in call.keywords
-    ):
-        return False
-    parameters = function.args
-    needed = len(parameters.posonlyargs) + len(parameters.args) - len(parameters.defaults)
-    return len(call.args) + len(call.keywords) < needed - is_method
 
 
 def _no_response(value: ast.expr, function: AnyFunction) -> str:

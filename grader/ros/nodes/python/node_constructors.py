@@ -3,8 +3,10 @@
 import ast
 from collections.abc import Collection, Iterator
 
+from grader.base.problems import NO_FIXES
 from grader.ros.nodes.node_facts import CodeFault
-from grader.ros.nodes.python.called_functions import methods_of, names_bound_by
+from grader.ros.nodes.python.called_functions import methods_of, names_in_class
+from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.rclpy_names import HARMLESS
 from grader.ros.python.constants import dotted, last_name
 from grader.ros.python.parse import AnyFunction, Code
@@ -31,38 +33,40 @@ _UNCERTAIN = (
 
 
 def early_uses(
-    code: Code, owner: ast.ClassDef, replaced: Collection[str], bases: Collection[str]
+    code: Code,
+    owner: ast.ClassDef,
+    node_name: str,
+    replaced: Collection[str],
+    bases: Collection[str],
+    spun: Collection[str],
 ) -> Iterator[CodeFault]:
     """Yield the first call in a constructor that needs what super().__init__() makes.
 
+    Without such a call, yield that super().__init__() is missing in a class that is `spun`.
     `owner` is a class whose only base is a node of rclpy, `replaced` are attributes that code sets.
     `bases` are the classes that others inherit: the constructors of these may make the node.
     """
     constructor = methods_of(owner).get("__init__")
     if constructor is None or _is_made_elsewhere(owner, constructor, bases):
         return
-    known = {*replaced, *(name for node in owner.body for name in names_bound_by(node))}
-    for statement in _statements_before(constructor):
-        called = _first_need(statement, owner, known)
-        if called is not None:
-            when = "called later" if initialises(constructor) else "not called"
-            message = (
-                f"{dotted(called.func)}() needs what super().__init__() makes, which is {when}: "
-                "Python raises an AttributeError; call super().__init__() first"
-            )
-            yield CodeFault("constructor-order", message, code.at(called))
-            return
-
-
-def missing_init(code: Code, owner: ast.ClassDef, bases: Collection[str]) -> Iterator[CodeFault]:
-    """Yield that nothing initialises the node that a class is, which is spun."""
-    constructor = methods_of(owner).get("__init__")
-    if constructor is None or initialises(constructor):
-        return
-    if not _is_made_elsewhere(owner, constructor, bases):
+    when, fixes = "called later", NO_FIXES
+    if not _initialises(constructor):
+        when = "not called"
+        statement = f"super().__init__({node_name})"
+        fixes = CodeEdits(code.source).add_first(constructor.body, statement)
+    known = names_in_class(owner).union(replaced)
+    called = None
+    for statement_before in _statements_before(constructor):
+        called = called or _first_need(statement_before, owner, known)
+    if called is not None:
+        message = (
+            f"{dotted(called.func)}() needs what super().__init__() makes, which is {when}: "
+            "Python raises an AttributeError; call super().__init__() first"
+        )
+        yield CodeFault("constructor-order", message, code.at(called), fixes=fixes)
+    elif owner.name in spun and when == "not called":
         message = f"super().__init__() is missing in the class {owner.name}, so it is no node"
-        at = code.at(constructor)
-        yield CodeFault("constructor-order", message, at)
+        yield CodeFault("constructor-order", message, code.at(constructor), fixes=fixes)
 
 
 def _is_made_elsewhere(
@@ -72,9 +76,9 @@ def _is_made_elsewhere(
 ) -> bool:
     """Return whether something besides a constructor may make the node."""
     others = [method for method in methods_of(owner).values() if method is not constructor]
-    if any(map(initialises, others)):
+    if any(map(_initialises, others)):
         return True
-    return not initialises(constructor) and (
+    return not _initialises(constructor) and (
         owner.name in bases or _may_be_made(owner, constructor)
     )
 
@@ -82,7 +86,7 @@ def _is_made_elsewhere(
 def _statements_before(constructor: AnyFunction) -> list[ast.stmt]:
     """Return the statements before that with super().__init__(); all where there is none."""
     for position, statement in enumerate(constructor.body):
-        if initialises(statement):
+        if _initialises(statement):
             return constructor.body[:position]
     return constructor.body
 
@@ -101,7 +105,7 @@ def _may_be_made(owner: ast.ClassDef, constructor: AnyFunction) -> bool:
     return False
 
 
-def initialises(node: ast.AST) -> bool:
+def _initialises(node: ast.AST) -> bool:
     """Return whether code may call the constructor of a base class."""
     return any(isinstance(part, ast.Attribute) and part.attr == "__init__" for part in walk(node))
 

@@ -449,7 +449,7 @@ class _Module:
     """
 
     def __init__(self, code: Code, name: str, work: Budget, *, is_package: bool) -> None:
-        self._code, self._name = code, name
+        self._code, self._name, self._at = code, name, code.at
         functions = dict.fromkeys(("rclpy.qos.QoSProfile", *_CREATES), record)
         syntax = every_node(code.tree)
         self._constants = Constants(syntax, name, functions, work, is_package=is_package)
@@ -482,9 +482,6 @@ class _Module:
                 )
             elif isinstance(part, ast.ClassDef):
                 self._add_class(part, scope)
-
-    def _at(self, node: ast.expr | ast.stmt) -> Location:
-        return self._code.at(node)
 
     def _add_class(self, node: ast.ClassDef, scope: Scope) -> None:
         """Keep a class and its methods, which reach its constants as attributes of self."""

@@ -21,7 +21,6 @@ from grader.ros.python.constants import binds_unseen, dotted
 from grader.ros.python.parse import Position, every_node, location_in, position_of
 from grader.ros.python.walking import children, walk
 
-_MAX_SEARCHED = 32 * 1024  # characters of a program whose faults are assumed fixed
 _NEW_LINE = re.compile(r"\n[ \t]*")
 
 
@@ -32,7 +31,7 @@ def assumed_fixes(module: ModuleText, function: str, faults: Iterable[CodeFault]
     one that it calls; it is empty for a script, which runs its body as __main__.
     """
     code = module.code
-    if len(code.source.text) > _MAX_SEARCHED or binds_unseen(every_node(code.tree)):
+    if binds_unseen(every_node(code.tree)):
         return
     places = _RunningCode(module, function).read()
     certain = [fault for fault in faults if fault.is_certain and fault.location in places]

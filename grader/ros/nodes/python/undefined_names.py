@@ -97,16 +97,8 @@ def _unevaluated(tree: ast.Module) -> set[Position]:
     """Return the places in annotations, which Python does not always evaluate."""
     places = set[Position]()
     for node in every_node(tree):
-        match node:
-            case ast.AnnAssign(annotation=annotation):
-                inside: ast.expr | None = annotation
-            case ast.arg(annotation=inside):
-                pass
-            case ast.FunctionDef(returns=inside) | ast.AsyncFunctionDef(returns=inside):
-                pass
-            case _:
-                continue
-        for part in walk(inside) if inside is not None else ():
+        annotation = getattr(node, "annotation", None) or getattr(node, "returns", None)
+        for part in walk(annotation) if annotation is not None else ():
             if isinstance(part, ast.expr):
                 places.add(position_of(part))
     return places
