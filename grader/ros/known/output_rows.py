@@ -1,7 +1,6 @@
 """What programs of ROS 2 say when something is wrong: the rows of outputs.toml."""
 
 import re
-from collections.abc import Mapping
 from functools import cache
 from typing import Literal, NamedTuple
 
@@ -38,7 +37,7 @@ class OutputRow(NamedTuple):
     @property
     def compiled(self) -> "re.Pattern[str]":
         """The pattern, compiled once."""
-        return _compiled()[self.name]
+        return _compiled(self.pattern)
 
 
 class _Outputs(NamedTuple):
@@ -52,5 +51,5 @@ def known_outputs() -> tuple[OutputRow, ...]:
 
 
 @cache
-def _compiled() -> "Mapping[str, re.Pattern[str]]":
-    return {row.name: re.compile(row.pattern) for row in known_outputs()}
+def _compiled(pattern: str) -> "re.Pattern[str]":
+    return re.compile(pattern)

@@ -7,18 +7,20 @@ alike are no proof.
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from functools import cache
 from typing import NamedTuple
 
 from grader.base.errors import NotDecided
 from grader.base.problems import Problem
 from grader.base.source import Location, SourceOf
 from grader.base.text import cut
-from grader.ros.known.output_rows import known_outputs
+from grader.ros.known.output_rows import OutputRow, known_outputs
 from grader.ros.package.robot_file import Read
 from grader.workspace.log.log_messages import LogMessage, read_messages
 from grader.workspace.log.log_places import KnownMessage, paths_of_publishers, placed_answers
 from grader.workspace.opening.opened import OpenedWorkspace
 from grader.workspace.rules.name_fixes import NameFixes
+from grader.workspace.rules.rule_table import RULES
 
 _MAX_ANSWERS = 40
 _MAX_OF_A_MESSAGE = 2
@@ -82,9 +84,22 @@ def explain_log(
     return tuple(answers[:_MAX_ANSWERS])
 
 
+@cache
+def known_rows() -> tuple[OutputRow, ...]:
+    """Return what the terminal prints where rules are broken, then the other known messages."""
+    rows = []
+    for rule in RULES.values():
+        for symptom in rule.symptoms:
+            pattern, program, source, sentence, _, within = symptom
+            rows.append(
+                OutputRow(rule.name, pattern, program, source, sentence, (rule.name,), within)
+            )
+    return (*rows, *known_outputs())
+
+
 def _known(message: LogMessage) -> KnownMessage | None:
     """Return the first row that knows a message."""
-    for row in known_outputs():
+    for row in known_rows():
         match = row.compiled.search(message.text)
         if match is not None:
             groups = {name: value or "" for name, value in match.groupdict().items()}

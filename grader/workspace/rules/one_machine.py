@@ -17,6 +17,7 @@ from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
     ONE_MACHINE,
     Rule,
+    Symptom,
 )
 
 # A folder of a user, or a workspace of root.
@@ -244,6 +245,16 @@ _ENVIRONMENT_VARIABLE = Rule(
     why=(
         "Where the variable is not set, ros2 launch stops with an error such as KeyError. It "
         "works only in a shell that sets the variable."
+    ),
+    symptoms=(
+        Symptom(
+            pattern=r"environment variable '(?P<variable>\w{1,200}+)' does not exist",
+            program="launch",
+            source="ros2/launch 02595baf, launch/launch/substitutions/environment_variable.py:101",
+            sentence="A launch file reads an environment variable that is not set.",
+            example="environment variable 'TURTLEBOT3_MODEL' does not exist",
+            within=("variable",),
+        ),
     ),
     wrong="Node(package='turtlesim', executable='turtlesim_node', name=os.environ['ROVER']),",
     right="""
