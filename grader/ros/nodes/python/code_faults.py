@@ -47,6 +47,7 @@ from grader.ros.nodes.python.log_calls import wrong_log_calls
 from grader.ros.nodes.python.message_faults import wrong_imports
 from grader.ros.nodes.python.node_constructors import early_uses
 from grader.ros.nodes.python.parameter_values import parameters_as_values
+from grader.ros.nodes.python.python_calls import WrongCall
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
 from grader.ros.nodes.python.undefined_names import undefined_names
 from grader.ros.python.bindings import bound_names
@@ -239,28 +240,34 @@ def _wrong_calls(
     for other in others.values():
         classes.update(f"{other.name}.{node.name}" for node in other.nodes.values())
     package = module.name.partition(".")[0]
-    own_classes = {node.name for node in module.nodes.values()}
     assigned = [last_name(node.value) for node in nodes if isinstance(node, ast.Assign)]
     names_classes = any(name[:1].isupper() for name in assigned)
     for part in module.parts:
         owner = module.nodes.get(part.of) if part.of is not None else None
         other_names = _other_names(part.node) if names_classes else {}
         kind_in_part = partial(_kind_in_part, package, classes, part, other_names)
-        filled = {"node_name": module.node_name}
-        made = [name for name, kind in made_in(walk(part.node)) if kind in own_classes]
-        if owner is not None:
-            filled["node"] = "self"
-        elif len(made) == 1:
-            filled["node"] = made[0]
-        wrong_calls = {
-            call: functions.wrong_call(call, owner, filled, kind_in_part) for call in part.calls
-        }
-        wrong = {call: fault for call, fault in wrong_calls.items() if fault is not None}
+        filled = _find_filled(module, part)
+        wrong = dict[ast.Call, WrongCall]()
+        for call in part.calls:
+            wrong_call = functions.wrong_call(call, owner, filled, kind_in_part)
+            if wrong_call is not None:
+                wrong[call] = wrong_call
         certain = set(certain_nodes(part.node)) if wrong else set[ast.AST]()
-        said = [call for call in wrong if call in certain]
-        for call in sorted(said, key=position_of):
+        for call in sorted(wrong.keys() & certain, key=position_of):
             at = module.code.at(call)
             yield CodeFault("call-arguments", wrong[call].reaction, at, fixes=wrong[call].fixes)
+
+
+def _find_filled(module: ModuleText, part: CodePart) -> dict[str, str]:
+    """Return what is given to parameters in a function where it is missing."""
+    filled = {"node_name": module.node_name}
+    classes = {node.name for node in module.nodes.values()}
+    made = [name for name, kind in made_in(walk(part.node)) if kind in classes]
+    if part.of in module.nodes:
+        filled["node"] = "self"
+    elif len(made) == 1:
+        filled["node"] = made[0]
+    return filled
 
 
 def _other_names(function: ast.AST) -> Mapping[str, ast.expr]:
@@ -731,18 +738,21 @@ class _Search:
     def _spin(self) -> Fixes:
         """Return the fix that spins the node of the only statement that makes one."""
         classes = {node.name for node in self._module.nodes.values()}
-        calls, nodes = list[ast.Call](), list[ast.AST]()
+        calls = list[ast.Call]()
+        statements = dict[ast.expr, ast.Expr | ast.Assign]()
         for part in self._module.parts:
             calls += [call for call in part.calls if dotted(call.func) in classes]
-            nodes += walk(part.node) if part.of is None and part.name else ()
-        for statement in nodes if len(calls) == 1 else ():
-            match statement:
-                case ast.Expr(value=call) if call is calls[0]:
-                    start, end = self._edits.span(call)
-                    made = self._code.source.text[start:end]
-                    return self._edits.rewrite(start, end, f"rclpy.spin({made})")
-                case ast.Assign(targets=[ast.Name(id=name)], value=call) if call is calls[0]:
-                    return self._edits.add_behind(statement, f"rclpy.spin({name})")
+            for node in walk(part.node) if part.of is None and part.name else ():
+                if isinstance(node, ast.Expr | ast.Assign):
+                    statements[node.value] = node
+        statement = statements.get(calls[0]) if len(calls) == 1 else None
+        match statement:
+            case ast.Assign(targets=[ast.Name(id=name)]):
+                return self._edits.add_behind(statement, f"rclpy.spin({name})")
+            case ast.Expr(value=call):
+                start, end = self._edits.span(call)
+                made = self._code.source.text[start:end]
+                return self._edits.rewrite(start, end, f"rclpy.spin({made})")
         return NO_FIXES
 
     def uncalled_main(self) -> Iterator[CodeFault]:
