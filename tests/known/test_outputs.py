@@ -1,4 +1,4 @@
-"""Each row of outputs.toml knows what its program says, by the format string of the source."""
+"""Each row of outputs.toml, and each symptom of a rule, knows what its program says, by the format string of the source."""
 
 import re
 import string
@@ -9,8 +9,9 @@ from typing import Any
 
 import pytest
 
-from grader.ros.known.output_rows import OutputRow, known_outputs
+from grader.ros.known.output_rows import OutputRow
 from grader.workspace.api import RULES
+from grader.workspace.log.explaining import known_rows
 from grader.workspace.log.log_messages import read_messages
 from grader.workspace.rules.problem_kinds import EVERY_KIND
 
@@ -30,7 +31,7 @@ def test_a_row_knows_the_text_of_its_source(said: Mapping[str, Any]) -> None:
     text = _text_of(said)
     for log in (text, f"[ERROR] [17.5] [node]: {text}"):
         [message] = read_messages(log.encode())
-        row = next(row for row in known_outputs() if row.compiled.search(message.text))
+        row = next(row for row in known_rows() if row.compiled.search(message.text))
         match = row.compiled.search(message.text)
         assert match is not None
         assert (row.name, match.groupdict()) == (said["output"], said["names"])
@@ -38,12 +39,12 @@ def test_a_row_knows_the_text_of_its_source(said: Mapping[str, Any]) -> None:
 
 def test_each_row_has_a_text() -> None:
     """No row is without one, and no two have one name."""
-    names = [row.name for row in known_outputs()]
+    names = [row.name for row in known_rows()]
     assert len(names) == len(set(names))
     assert {said["output"] for said in _SAID} == set(names)
 
 
-@pytest.mark.parametrize("row", known_outputs(), ids=lambda row: row.name)
+@pytest.mark.parametrize("row", known_rows(), ids=lambda row: row.name)
 def test_a_row_names_what_exists(row: OutputRow) -> None:
     """Its rules are rules or codes, its groups are those of its pattern, and its source has a line."""
     for rule in row.rules:
