@@ -240,12 +240,9 @@ def _wrong_calls(
     for other in others.values():
         classes.update(f"{other.name}.{node.name}" for node in other.nodes.values())
     package = module.name.partition(".")[0]
-    assigned = [last_name(node.value) for node in nodes if isinstance(node, ast.Assign)]
-    names_classes = any(name[:1].isupper() for name in assigned)
     for part in module.parts:
         owner = module.nodes.get(part.of) if part.of is not None else None
-        other_names = _other_names(part.node) if names_classes else {}
-        kind_in_part = partial(_kind_in_part, package, classes, part, other_names)
+        kind_in_part = partial(_kind_in_part, package, classes, part, _other_names(part.node))
         filled = _find_filled(module, part)
         wrong = dict[ast.Call, WrongCall]()
         for call in part.calls:
@@ -294,8 +291,7 @@ def _kind_in_part(
 
     This is one of the given classes of nodes, or a type of messages. `others` are other names.
     """
-    named = others.get(node.id, node) if isinstance(node, ast.Name) else node
-    first, dot, rest = dotted(named).partition(".")
+    first, dot, rest = dotted(others.get(dotted(node), node)).partition(".")
     value = constant_in(part.scope, first)
     if not isinstance(value, QualifiedName):
         return None

@@ -50,10 +50,10 @@ def wrong_fields(
 
     for use in uses:
         used = resolve_field(use, find)
-        meant = None
-        if used is not None and used.is_absent:
-            meant = used.find_meant(find, is_sure=True)
-        if used is not None and meant is not None:
+        if used is None or not used.is_absent:
+            continue
+        meant = used.find_meant(find, is_sure=True)
+        if meant is not None:
             start = source.offset(use.location.line, use.location.column)
             fixes = CodeEdits(source).rewrite(start, start + len(used.name), meant)
             message = f"{used.owner} has no {used.noun} {used.name}"
