@@ -44,12 +44,11 @@ from grader.ros.nodes.python.called_functions import (
 )
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.log_calls import wrong_log_calls
-from grader.ros.nodes.python.message_faults import wrong_imports
 from grader.ros.nodes.python.node_constructors import early_uses
 from grader.ros.nodes.python.parameter_values import parameters_as_values
 from grader.ros.nodes.python.python_calls import WrongCall
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
-from grader.ros.nodes.python.undefined_names import undefined_names
+from grader.ros.nodes.python.undefined_names import undefined_names, wrong_imports
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import binds_unseen, constant_in, dotted, last_name
 from grader.ros.python.parse import Code, every_node, position_of

@@ -50,9 +50,8 @@ from grader.ros.nodes.python.code_faults import (
 from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bindings
 from grader.ros.nodes.python.inherited_nodes import OwnClass, with_inherited
 from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
-from grader.ros.nodes.python.message_faults import wrong_fields
 from grader.ros.nodes.python.rclpy_names import HARMLESS, NODE_CLASSES
-from grader.ros.nodes.python.running_code import assumed_fixes
+from grader.ros.nodes.python.undefined_names import wrong_fields
 from grader.ros.nodes.python.unused_publishers import unused_publishers
 from grader.ros.package.entry_points import (
     entry_as_meant,
@@ -318,6 +317,8 @@ def _slips_of(package: Package, program: NodeProgram, searched: _Searched) -> Se
         return ()
     if module is None:
         return python_slips(data, path)
+    from grader.ros.nodes.python.running_code import assumed_fixes  # late: many have no programs
+
     text = module.text()
     fields = wrong_fields(text.code.source, module.field_uses, package.releases)
     faults = [*searched.faults.get(path, ()), *fields]
