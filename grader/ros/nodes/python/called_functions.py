@@ -47,14 +47,13 @@ class CalledFunctions:
         for node in nodes:
             self._add(node)
         imports = dict[str, str]()
-        lost = self._rebound | self._defined
+        self._lost = self._rebound | self._defined
         for node in nodes:
             for name, full in imported_names([node]).items():
                 if imports.setdefault(name, full) != full:
-                    lost.add(name)
+                    self._lost.add(name)
         # The names that the module certainly imports, and does not bind to anything else.
-        self._imports = {name: full for name, full in imports.items() if name not in lost}
-        self._lost = lost
+        self._imports = {name: full for name, full in imports.items() if name not in self._lost}
         self._made = _calls_bound(nodes)
 
     def _add(self, node: ast.AST) -> None:

@@ -44,12 +44,11 @@ from grader.ros.nodes.python.called_functions import (
 )
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.log_calls import wrong_log_calls
-from grader.ros.nodes.python.message_faults import wrong_imports
 from grader.ros.nodes.python.node_constructors import early_uses
 from grader.ros.nodes.python.parameter_values import parameters_as_values
 from grader.ros.nodes.python.python_calls import WrongCall
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
-from grader.ros.nodes.python.undefined_names import undefined_names
+from grader.ros.nodes.python.undefined_names import undefined_names, wrong_imports
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import binds_unseen, constant_in, dotted, last_name
 from grader.ros.python.parse import AnyFunction, Code, every_node, position_of
@@ -240,12 +239,9 @@ def _wrong_calls(
     for other in others.values():
         classes.update(f"{other.name}.{node.name}" for node in other.nodes.values())
     package = module.name.partition(".")[0]
-    assigned = [last_name(node.value) for node in nodes if isinstance(node, ast.Assign)]
-    names_classes = any(name[:1].isupper() for name in assigned)
     for part in module.parts:
         owner = module.nodes.get(part.of) if part.of is not None else None
-        other_names = _other_names(part.node) if names_classes else {}
-        kind_in_part = partial(_kind_in_part, package, classes, part, other_names)
+        kind_in_part = partial(_kind_in_part, package, classes, part, _other_names(part.node))
         filled = _find_filled(module, part)
         wrong = dict[ast.Call, WrongCall]()
         for call in part.calls:
@@ -294,8 +290,7 @@ def _kind_in_part(
 
     This is one of the given classes of nodes, or a type of messages. `others` are other names.
     """
-    named = others.get(node.id, node) if isinstance(node, ast.Name) else node
-    first, dot, rest = dotted(named).partition(".")
+    first, dot, rest = dotted(others.get(dotted(node), node)).partition(".")
     value = constant_in(part.scope, first)
     if not isinstance(value, QualifiedName):
         return None

@@ -102,11 +102,12 @@ def _build_slips(package: Package, installation: Installation) -> Iterator[Slip]
 def _argument_slips(installation: Installation, code: Code) -> Iterator[Slip]:
     """Yield the argument that setup() does not have, near one that it has."""
     ignored = installation.misspelt
-    for node in walk(code.tree) if ignored is not None and ignored.meant else ():
-        if isinstance(node, ast.keyword) and ignored is not None and node.arg == ignored.name:
+    if ignored is None or not ignored.meant:
+        return
+    for node in walk(code.tree):
+        if isinstance(node, ast.keyword) and node.arg == ignored.name:
             reaction = f"setuptools ignores the argument {ignored.name}"
-            meant = ignored.meant or ""
-            yield read_as(code, node, ignored.name, meant, reaction, is_refused=False)
+            yield read_as(code, node, ignored.name, ignored.meant, reaction, is_refused=False)
 
 
 def _entry_slips(package: Package, source: Source) -> Iterator[Slip]:

@@ -50,9 +50,8 @@ from grader.ros.nodes.python.code_faults import (
 from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bindings
 from grader.ros.nodes.python.inherited_nodes import OwnClass, with_inherited
 from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
-from grader.ros.nodes.python.message_faults import wrong_fields
 from grader.ros.nodes.python.rclpy_names import HARMLESS, NODE_CLASSES
-from grader.ros.nodes.python.running_code import assumed_fixes
+from grader.ros.nodes.python.undefined_names import wrong_fields
 from grader.ros.nodes.python.unused_publishers import unused_publishers
 from grader.ros.package.entry_points import (
     entry_as_meant,
@@ -282,10 +281,11 @@ def _search_faults(modules: Collection["_Module"], releases: Sequence[Release]) 
     texts = [module.text() for module in modules]
     by_name = {text.name: text for text in texts}
     attributes = attributes_in(texts)
-    faults: dict[str, Sequence[CodeFault]] = {}
+    by_path, faults = dict[str, _Module](), dict[str, Sequence[CodeFault]]()
     left, is_whole = _MAX_CODE, True
-    for text in texts:
+    for module, text in zip(modules, texts, strict=True):
         source = text.code.source
+        by_path[source.path] = module
         left -= len(source.text)
         try:
             if left >= 0:
@@ -293,7 +293,6 @@ def _search_faults(modules: Collection["_Module"], releases: Sequence[Release]) 
         except RecursionError:
             left = -1
         is_whole = is_whole and left >= 0
-    by_path = {text.code.source.path: module for text, module in zip(texts, modules, strict=True)}
     return _Searched(by_path, faults, is_whole)
 
 
@@ -315,13 +314,16 @@ def _slips_of(package: Package, program: NodeProgram, searched: _Searched) -> Se
         return None
     path = package.path(program.path)
     module = searched.modules.get(path)
-    if data is None or (module is not None and path not in searched.faults):
+    if data is None:
         return ()
     if module is None:
         return python_slips(data, path)
+    from grader.ros.nodes.python.running_code import assumed_fixes  # late: many have no programs
+
     text = module.text()
     fields = wrong_fields(text.code.source, module.field_uses, package.releases)
-    return [*assumed_fixes(text, program.function, [*searched.faults[path], *fields])]
+    faults = [*searched.faults.get(path, ()), *fields]
+    return [*assumed_fixes(text, program.function, faults)]
 
 
 def _module_paths(package: Package) -> dict[str, str]:
