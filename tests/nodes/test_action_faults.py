@@ -18,7 +18,7 @@ def _faults_of(body: str, head: str = _HEAD) -> list[str]:
         "    def now(self):\n        return None\n"
     )
     text = f"{head}\nclass Look(Node):\n    def __init__(self):\n        super().__init__('look')\n{statements}{methods}"
-    return [fault.message for fault in nodes_of(text).faults if fault.rule == "no listener"]
+    return [fault.message for fault in nodes_of(text).faults if fault.rule == "buffer-listener"]
 
 
 @pytest.mark.parametrize("made", ["Buffer()", "tf2_ros.Buffer()", "tf2_ros.buffer.Buffer()"])
@@ -96,7 +96,7 @@ ENDS = [
 def test_goals_without_a_state(end: str, goals: str) -> None:
     """A function that executes goals sets the state of each one that it ends."""
     body = "".join(f"        {line}\n" for line in end.splitlines())
-    faults = [fault for fault in nodes_of(_ACTION + body).faults if fault.rule == "no goal state"]
+    faults = [fault for fault in nodes_of(_ACTION + body).faults if fault.rule == "goal-state"]
     said = [fault.message.partition(" of ")[2].partition(",")[0] for fault in faults]
     assert said == ([goals] if goals else [])
 
@@ -129,7 +129,7 @@ def test_a_server_that_rejects_each_goal(body: str, given: str, *, is_wrong: boo
         + "    async def answer_later(self, request):\n        return GoalResponse.ACCEPT\n"
     )
     message = "answer() answers no goal with GoalResponse.ACCEPT, so rclpy rejects each, and executes none"
-    messages = [fault.message for fault in nodes_of(text).faults if fault.rule == "rejects goals"]
+    messages = [fault.message for fault in nodes_of(text).faults if fault.rule == "goal-state"]
     assert messages == ([message] if is_wrong else [])
 
 
@@ -174,4 +174,4 @@ def main():
 def test_loops_of_goals_that_look_up_transforms(old: str, new: str, count: int) -> None:
     """With one thread, no transform is read until the loop ends."""
     faults = nodes_of(_LOOP.replace(old, new, 1) if old else _LOOP).faults
-    assert len([fault for fault in faults if fault.rule == "waits in a callback"]) == count
+    assert len([fault for fault in faults if fault.rule == "callback-wait"]) == count

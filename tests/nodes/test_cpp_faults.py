@@ -58,9 +58,9 @@ KEPT = [
 @pytest.mark.parametrize(("statement", "message"), DESTROYED)
 def test_what_nothing_keeps(statement: str, message: str) -> None:
     """What a constructor makes and nothing keeps is destroyed with it."""
-    faults = [fault for fault in faults_of(statement, _ON) if fault.rule != "no goal state"]
+    faults = [fault for fault in faults_of(statement, _ON) if fault.rule != "goal-state"]
     [fault] = faults
-    assert (fault.rule, fault.message, fault.is_certain) == ("destroyed at once", message, True)
+    assert (fault.rule, fault.message, fault.is_certain) == ("entity-kept", message, True)
 
 
 @pytest.mark.parametrize("statement", KEPT)
@@ -80,7 +80,7 @@ def test_a_buffer_without_listener(members: str) -> None:
     """A buffer that no listener fills is empty."""
     [fault] = faults_of(_MAKE, f"{_LOOK} {_BUFFER} {members}")
     assert (fault.rule, fault.message) == (
-        "no listener",
+        "buffer-listener",
         "the buffer stays empty: nothing makes a TransformListener",
     )
 
@@ -109,7 +109,7 @@ def test_a_rotation_of_zeros() -> None:
     """Four zeros are no rotation."""
     [fault] = faults_of(_SENT.format(_ZEROS, "0.0", ""))
     assert (fault.rule, fault.message) == (
-        "no rotation",
+        "rotation-set",
         "the rotation 0 0 0 0 turns nothing: tf2 ignores the transform",
     )
 
@@ -136,7 +136,7 @@ def test_nothing_spins() -> None:
     main = _MAIN.format("auto node = std::make_shared<Talker>(); rclcpp::shutdown();")
     [fault] = faults_of("timer_ = create_wall_timer(1s, cb);", main=main)
     assert (fault.rule, fault.message) == (
-        "nothing spins",
+        "node-spins",
         "nothing spins the node: its callbacks are never called",
     )
     assert faults_of('create_publisher<std_msgs::msg::Bool>("a", 1);', main=main) == []
@@ -171,7 +171,7 @@ WAITING = [
 def test_waiting_in_a_callback(statement: str) -> None:
     """A callback cannot receive the response that it waits for."""
     [fault] = faults_of(_TIMER, _WAIT.format(statement))
-    assert fault.rule == "waits in a callback"
+    assert fault.rule == "callback-wait"
 
 
 NOT_WAITING = [
@@ -260,7 +260,7 @@ def test_goals_without_a_state(library: str, members: str, *, is_ended: bool) ->
     faults = [
         (fault.rule, fault.is_certain) for fault in faults_of(_SERVE.format(library), members)
     ]
-    assert faults == ([] if is_ended else [("no goal state", False)])
+    assert faults == ([] if is_ended else [("goal-state", False)])
 
 
 @pytest.mark.parametrize(
@@ -277,7 +277,7 @@ def test_servers_that_reject_each_goal(library: str, answers: str, *, is_wrong: 
     """A server executes no goal where nothing is accepted."""
     members = f"int answer(int order) {{ {answers} }} void run(Handle goal) {{ goal->succeed(); }}"
     faults = [(each.rule, each.is_certain) for each in faults_of(_SERVE.format(library), members)]
-    assert faults == ([("rejects goals", False)] if is_wrong else [])
+    assert faults == ([("goal-state", False)] if is_wrong else [])
 
 
 _ACTIVE = """
@@ -309,5 +309,7 @@ def test_publishers_that_stay_inactive(
 ) -> None:
     """Each publisher of a node with a lifecycle is activated, with the node or on its own."""
     faults = list(nodes_of(_ACTIVE.format(base, made, active, members)).faults)
-    rules = [(fault.rule, fault.is_certain) for fault in faults if fault.rule == "not activated"]
-    assert rules == ([] if is_active else [("not activated", True)])
+    rules = [
+        (fault.rule, fault.is_certain) for fault in faults if fault.rule == "publisher-activated"
+    ]
+    assert rules == ([] if is_active else [("publisher-activated", True)])
