@@ -382,6 +382,26 @@ def test_corrects_each_of_two_equal_names_in_one_line(in_diffdrive: Run) -> None
 
 
 @pytest.mark.slow
+def test_adds_an_import_that_a_node_lacks(in_diffdrive: Run) -> None:
+    async def act(one: Editor) -> None:
+        script = _CONTROLLERS.replace("config/controllers.yaml", "scripts/drive_circle.py")
+        await one.open(script)
+        await one.type(script, one.text(script).replace("import rclpy\n", "", 1))
+        found = [it for it in one.client.diagnostics[one.uri(script)] if "rclpy" in it.message]
+        context = lsp.CodeActionContext(found)
+        asked = lsp.CodeActionParams(one.document(script), found[0].range, context)
+        offered = await one.client.text_document_code_action_async(asked) or ()
+        [action] = [it for it in offered if it.title == "Add 'import rclpy'"]
+        assert isinstance(action, lsp.CodeAction)
+        assert action.edit is not None
+        assert action.edit.changes is not None
+        [edit] = action.edit.changes[one.uri(script)]
+        assert edit.new_text == "import rclpy\n"
+
+    in_diffdrive(act)
+
+
+@pytest.mark.slow
 def test_corrects_where_the_name_is_written(in_diffdrive: Run) -> None:
     """The problem is at the call, and the name some lines below it."""
 

@@ -144,3 +144,34 @@ def test_a_long_expression_takes_no_stack() -> None:
     """What a student writes is read in any depth that Python parses."""
     text = SCRIPT.replace("def main():\n", f"def main():\n    a = {'1+' * 900}1\n")
     assert reactions(text) == []
+
+
+def test_a_name_that_is_misspelt_more_than_once_is_one_slip() -> None:
+    """It is corrected wherever the program certainly uses it."""
+    text = SCRIPT.replace("self.publisher.publish", "self.publishr.publish").replace(
+        SEND, f"{SEND}        print(self.publishr)\n"
+    )
+    [slip] = slips_of(text)
+    assert [edit.new for edit in slip.edits] == ["publisher", "publisher"]
+    assert slips_of(edited(text, slip.location.path, slip.edits) or "") == []
+
+
+@pytest.mark.parametrize("name", ["Publisher", "Path", "Drive"])
+def test_a_name_that_may_mean_several_things_is_not_corrected(name: str) -> None:
+    """A class is no variable, other libraries have a Path, and what is like no other name is open."""
+    publisher = "        publisher = 1\n"
+    assert (
+        reactions(SCRIPT.replace(SEND, f"{SEND}{publisher}        print({name}(publisher))\n"))
+        == []
+    )
+
+
+def test_any_well_known_message_has_its_fields() -> None:
+    """A field of one that few nodes use is corrected as well."""
+    text = SCRIPT.replace(
+        "from geometry_msgs", "from sensor_msgs.msg import Range\nfrom geometry_msgs"
+    )
+    [reaction] = reactions(
+        text.replace(SEND, f"{SEND}        near = Range()\n        near.max_rnge = 2.0\n")
+    )
+    assert reaction == "sensor_msgs/msg/Range has no field max_rnge"
