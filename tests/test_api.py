@@ -210,7 +210,8 @@ def test_a_type_checker_accepts_the_examples(tmp_path: Path) -> None:
 def test_the_example_of_another_tool_prints_connections_and_findings() -> None:
     """docs/examples/read_workspace.py reads a workspace by its API alone."""
     script = ROOT / "docs/examples/read_workspace.py"
-    command = [sys.executable, script, ROOT / "submissions/diffdrive/spawner-misspelt"]
+    sample = ROOT / "submissions/diffdrive/spawner-misspelt"
+    command = [sys.executable, str(script), str(sample)]
     done = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
     *_, joined, finding = done.stdout.splitlines()
     assert joined == "topic /joint_states: /joint_state_broadcaster -> /robot_state_publisher"
