@@ -84,7 +84,8 @@ def names_agree(
             cause = "type"
         elif wrong[0].corrections:
             cause = "similar"
-        return failed(message, wrong[0].location, problem=first, mistake=first, cause=cause)
+        problem = wrong[0].message
+        return failed(message, wrong[0].location, problem=problem, mistake=first, cause=cause)
     if of in undecided:
         reason = undecided[of]
         cause = f"cannot determine statically whether the names of {of} agree"
