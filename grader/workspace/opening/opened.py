@@ -34,7 +34,7 @@ class OpenedWorkspace:
     its problems and how much of it was read. What is not asked for is not read.
 
     >>> from grader.files.tree import make_tree, overlaid
-    >>> from grader.ros.api import read_workspace
+    >>> from grader.workspace.api import read_workspace
     >>> files = {"arm.urdf": b"<robot name='arm'><link name='base'/></robot>"}
     >>> opened = read_workspace(overlaid(make_tree("ws", (), ()), files), "ws", 10_000, {})
     >>> [robot.path for robot in opened.robots], opened.extent().robots
