@@ -1,7 +1,7 @@
 """Every command that prints has the same output twice: on one processor and two, in other folders, locales and time zones.
 
 Each session of commands runs in processes of its own, in each of the circumstances below; output, exit codes and written files
-are equal. Only the time of a run, its zone and progress are left out.
+are equal. Only the time of a run, its zone and progress are not compared.
 """
 
 import os

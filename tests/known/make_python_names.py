@@ -2,7 +2,7 @@
 
 The arguments are interpreters of the versions that the releases of ROS 2 run with, oldest first, on Linux. Each lists its modules
 and names itself. An argument may have words, such as `chroot FOLDER python3.14`. The names stand in
-`grader/ros/known/python_names.toml`. Private names are left out, but for those of builtins: no documentation has them.
+`grader/ros/known/python_names.toml`. Private names are omitted, except those of builtins: no documentation has them.
 """
 
 import json

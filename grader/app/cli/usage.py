@@ -140,7 +140,7 @@ def usage_message(error: Any, arguments: Sequence[str], root: Any) -> str:
 
 
 def _extra_words(line: _CommandLine, error: Any) -> str:
-    """Return that a command with one argument gets several words; empty if that is not so."""
+    """Return that a command with one argument gets several words; empty otherwise."""
     arguments = [param for param in line.command.params if param.param_type_name == "argument"]
     words = [printable(line.words[index]) for index in line.loose]
     if hasattr(error, "option_name") or len(words) <= len(arguments) or len(arguments) != 1:

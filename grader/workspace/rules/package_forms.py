@@ -89,8 +89,8 @@ _DEPENDENCY_ONCE = Rule(
     FORM,
     "package.xml declares a dependency once.",
     why=(
-        "The second line has no effect. Whoever removes or changes only one of them does not "
-        "notice that the dependency is still declared."
+        "The second line has no effect. If only one of the two is removed, the dependency is still "
+        "declared."
     ),
     wrong="""
 <exec_depend>rclpy</exec_depend>
