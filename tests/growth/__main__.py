@@ -39,6 +39,7 @@ BOUNDED = {
     ("report.pages.shell", ""): "scripts and styles of our own",
     ("ros.installation.manifest_conditions", r"(\$[A-Z"): "_MAX_LENGTH",
     ("ros.package.trees", ""): "paths of entries in a rubric",
+    ("ros.python.parse", r"\b[rR]?[fF][rR]?"): "_MAX_SEARCHED characters of a line",
     ("ros.python.python_slips", "((?:[^#"): "_MAX_LENGTH of a line",
     ("ros.xacro.rewriting", ""): "_MAX_LENGTH of a text",
     ("ros.xml.repair", "<!--"): "what was read before, between two tags",
