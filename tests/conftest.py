@@ -96,30 +96,40 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 
 @contextmanager
-def _kept_variables() -> Iterator[None]:
+def _kept_variables(beginning: str = "") -> Iterator[None]:
+    """Take back what becomes of the variables whose names begin so."""
     before = dict(os.environ)
     try:
         yield
     finally:
-        if os.environ != before:
-            os.environ.clear()
-            os.environ.update(before)
+        for name in {*before, *os.environ}:
+            if name.startswith(beginning) and os.environ.get(name) != before.get(name):
+                os.environ.pop(name, None)
+                os.environ.update({name: before[name]} if name in before else {})
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call() -> Generator[None]:
+    """Take back what the code under test does to the variables of the process, as starting workers does."""
+    with _kept_variables():
+        return (yield)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol() -> Generator[None, bool, bool]:
-    """Take back what the code under test does to the variables of the process, as starting workers does.
+    """Do the same after the fixtures of a test, for those of Python: they may start workers as well.
 
-    Fixtures of a test may start workers as well: then Python no longer imports from the current folder in any later test.
+    Then Python no longer imports from the current folder in any later test.
     """
-    with _kept_variables():
+    with _kept_variables("PYTHON"):
         return (yield)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_fixture_setup(fixturedef: pytest.FixtureDef[object]) -> Generator[None, object, object]:
     """Do the same for a fixture that several tests share."""
-    with _kept_variables() if fixturedef.scope != "function" else nullcontext():
+    is_shared = fixturedef.scope != "function"
+    with _kept_variables("PYTHON") if is_shared else nullcontext():
         return (yield)
 
 

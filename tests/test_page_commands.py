@@ -39,6 +39,9 @@ OTHER_FILES = {  # what only these pages presume, and what it is
     "grade-one-submission.md": {"arm.urdf": "rubrics/arm/arm.urdf"},
     "gradescope.md": {"my_lab.toml": "rubrics/arm/rubric.toml"},
     "graph.md": {"rubrics/diffdrive": "rubrics/diffdrive"},
+    "inspect.md": {
+        "submissions/diffdrive/spawner-misspelt": "submissions/diffdrive/spawner-misspelt"
+    },
     "rubric-test.md": {"my_lab.toml": "rubrics/arm/rubric.toml"},
     "grade-a-class.md": {
         "my_lab.toml": "rubrics/lab6/rubric.toml",

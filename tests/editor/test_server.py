@@ -216,7 +216,7 @@ def test_a_criterion_that_reports_a_wrong_name_is_said_with_it(diffdrive: Path) 
         await one.type(_CONTROLLERS, text)
         first, second = one.client.diagnostics[one.uri(_CONTROLLERS)]
         assert (first.code, second.code) == ("REF002", "REF002")
-        assert first.message.endswith("(-3 points: frames-exist)")
+        assert first.message.endswith("(-3 points: frames-exist) (joint-defined)")
         assert "points" not in second.message
 
     _edit(diffdrive, act, "--rubric", "diffdrive")

@@ -8,7 +8,7 @@ import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, nullcontext, redirect_stderr, redirect_stdout
-from math import fsum, isfinite
+from math import isfinite
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
@@ -74,12 +74,21 @@ def _process(folder: Path, document: Document) -> tuple[str, bool]:
 
 
 def _compensated_sum(values: Any, start: Any = 0, add: Any = sum) -> Any:
-    """Return what sum() returns from Python 3.12 on, which Jazzy has."""
-    items = [start, *values]
-    is_finite = all(isinstance(item, int | float) and isfinite(item) for item in items)
-    if is_finite and any(isinstance(item, float) for item in items):
-        return fsum(items)
-    return add(items[1:], start)
+    """Return what sum() returns from Python 3.12 on, which Jazzy has.
+
+    What is lost where a float is added to one is added at the end; integers are added as they are.
+    """
+    items = list(values)
+    total = start
+    if not all(isinstance(item, int | float) for item in (total, *items)):
+        return add(items, start)
+    lost = 0.0
+    for item in items:
+        before, total = total, total + item
+        if isinstance(before, float) and isinstance(item, float):
+            is_larger = abs(before) >= abs(item)
+            lost += before - total + item if is_larger else item - total + before
+    return total + lost if lost and isfinite(lost) else total
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from grader.ros.known.releases import Release
 
 PYTHON_NAMES_FILE = Path(__file__).with_suffix(".toml")
 MODULES = ""  # the key of the names of all modules
-_DEFAULT = ("jazzy",)
+_DEFAULT: tuple[Release, ...] = ("jazzy",)
 
 
 @cache
@@ -25,8 +25,14 @@ def _tables() -> Any:
 
 def python_version(releases: Collection[Release]) -> int:
     """Return the newest minor version of Python of some releases; without any, that of Jazzy."""
+    return max(int(_version(release).removeprefix("3.")) for release in releases or _DEFAULT)
+
+
+def _version(release: Release) -> str:
+    """Return the version of Python of a release; of one that the table lacks, the newest."""
     versions = _tables()["python"]
-    return max(int(versions[release].removeprefix("3.")) for release in releases or _DEFAULT)
+    version: str = versions.get(release, versions["rolling"])
+    return version
 
 
 @cache
@@ -39,7 +45,7 @@ def python_names(key: str, releases: tuple[Release, ...] = ()) -> frozenset[str]
     tables = _tables()
     names = set(tables["always"].get(key, "").split())
     for release in releases or _DEFAULT:
-        names.update(tables[tables["python"][release]].get(key, "").split())
+        names.update(tables[_version(release)].get(key, "").split())
     return frozenset(names)
 
 
