@@ -8,13 +8,18 @@ from functools import cache
 import pytest
 import tomli
 
-from grader.ros.known.python_names import PYTHON_NAMES_FILE, python_names, shared_message
+from grader.ros.known.python_names import (
+    PYTHON_NAMES_FILE,
+    python_names,
+    python_version,
+    shared_message,
+)
 from grader.ros.known.releases import RELEASES
 from tests.known.make_python_names import list_names
 
 _RUNNING = sys.version_info.minor
 _TABLE = tomli.loads(PYTHON_NAMES_FILE.read_text("utf-8"))
-_BY_MINOR = {int(_TABLE["python"][release][2:]): release for release in RELEASES}
+_BY_MINOR = {python_version((release,)): release for release in RELEASES}
 _OF_MACHINE = {"errno", "os", "platform", "stat", "sys", "time"}  # the libc decides what is there
 _OF_BUILD = re.compile(
     r"_|ctypes|dbm|curses|.*win|ms|nt$|setuptools|pip|pkg_resources|lib2to3|tkinter|distutils"
@@ -61,7 +66,7 @@ def test_names(key: str) -> None:
 
 def test_each_release_has_a_python() -> None:
     """Each release runs with a version that the table has, and no release with an older one than the release before it."""
-    minors = [int(_TABLE["python"][release].removeprefix("3.")) for release in RELEASES]
+    minors = [python_version((release,)) for release in RELEASES]
     assert minors == sorted(minors)
     assert {f"3.{minor}" for minor in minors} == {*_TABLE} - {
         "python",
