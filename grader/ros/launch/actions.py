@@ -6,7 +6,7 @@ includes, arguments, timers, events.
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from grader.ros.installation.places import PREFIX, SHARE
 from grader.ros.launch.call_arguments import describe_kind, items_in
@@ -83,6 +83,20 @@ class NotIncluded(NamedTuple):
 Include = Callable[[str, Context], NotIncluded | None]
 
 
+class CallFunction(Protocol):
+    """Calls a function of the file; without arguments, with ones that are not known."""
+
+    def __call__(
+        self,
+        function: Function,
+        at: Position,
+        args: Sequence[Value] | None,
+        context: Context,
+        named: Mapping[str, Value] = ...,
+    ) -> Value:
+        """Return its value."""
+
+
 @dataclass(slots=True)
 class ActionVisitor:
     """A visitor of actions that adds its findings.
@@ -92,7 +106,7 @@ class ActionVisitor:
 
     findings: Findings
     include: Include
-    call_function: Callable[[Function, Position, Sequence[Value] | None, Context], Value]
+    call_function: CallFunction
     visited: set[Call] = field(default_factory=set)  # what is part of the description
     executed: dict[Call, bool | None] = field(
         default_factory=dict
@@ -140,7 +154,12 @@ class ActionVisitor:
         return None if is_open else False
 
     def visit(self, value: Value, context: Context, when: bool | None, at: Position) -> None:
-        """Visit an action."""
+        """Visit an action, or each of those of which it is one."""
+        if isinstance(value, Unknown) and value.candidates:
+            for candidate in value.candidates:
+                if candidate is not None:
+                    self.visit(candidate, context, when and None, at)
+            return
         self.steps += 1
         is_left = context.budget.take_of_whole(_OF_ACTION)
         if self.depth > _MAX_DEPTH or self.steps > _MAX_ACTIONS or not is_left:
@@ -234,7 +253,12 @@ class ActionVisitor:
                 self.findings.add(signal, call.at, when)
 
     def visit_all(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
-        """Visit the actions of a list."""
+        """Visit the actions of a list, or those of each that it may be."""
+        if isinstance(actions, Unknown) and actions.candidates:
+            for candidate in actions.candidates:
+                if candidate is not None:
+                    self.visit_all(candidate, call, context, when and None)
+            return
         try:
             items = items_in(actions)
         except Undetermined as signal:
@@ -509,15 +533,16 @@ def _call_opaque_function(
     visitor: ActionVisitor, call: Call, context: Context, when: bool | None
 ) -> None:
     function, args = call.kwargs["function"], call.kwargs.get("args") or []
-    if (
-        not isinstance(function, Function)
-        or not isinstance(args, list | tuple)
-        or call.kwargs.get("kwargs")
-    ):
+    named, first = call.kwargs.get("kwargs") or {}, list[Value]()
+    if isinstance(function, Call) and function.name == "functools.partial":
+        named, [function, *first] = {**function.kwargs, **named}, function.args
+    is_known = isinstance(args, list | tuple) and isinstance(named, dict)
+    if not isinstance(function, Function) or not is_known:
         raise Undetermined("the result of this OpaqueFunction is not evaluated", call.at)
-    arguments = (Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
-    returned = visitor.call_function(function, call.at, arguments if when else None, context)
-    if isinstance(returned, Unknown):
+    arguments = (*first, Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
+    given = arguments if when else None
+    returned = visitor.call_function(function, call.at, given, context, named)
+    if isinstance(returned, Unknown) and not returned.candidates:
         visitor.findings.add(returned.as_signal(), returned.at, when)
     elif returned is not None:
         visitor.visit_all(returned, call, context, when)

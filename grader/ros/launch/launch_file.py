@@ -76,12 +76,14 @@ from grader.ros.python.values import (
 
 _MODULE_NAME = "python_launch_file"  # the __name__ of a launch file
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
-_RECORDED = ("builtins.open.close", "builtins.open.__enter__")
+_RECORDED = ("builtins.open.close", "builtins.open.__enter__", "functools.partial")
 _TEXTS = [
     f"{name}.{method}"
     for name in ("xacro.process_file", "xacro.parse")
     for method in ("toxml", "toprettyxml")
 ]
+_ELEMENT_TREE, _MINIDOM = "xml.etree.ElementTree", "xml.dom.minidom"
+_PARSERS = (f"{_ELEMENT_TREE}.parse", f"{_MINIDOM}.parse")
 # A file that is opened to be written, and the modes of open for it.
 _WRITTEN = "io.TextIOWrapper"
 _WRITES = ("w", "wt", "a", "at", "x", "xt")
@@ -262,7 +264,9 @@ def _call_entry(
     error = _description_error(description)
     if error:
         visitor.findings.add_fault(error, entry.at)
-    elif not isinstance(description, Unknown) or file.interpreter.doubt is None:
+    elif (
+        not isinstance(description, Unknown) or description.candidates or not file.interpreter.doubt
+    ):
         visitor.launch(description, context, entry.at)
 
 
@@ -409,16 +413,22 @@ class _PythonLaunchFile:
             stand_ins=(PREFIX, HOME),
             exports=dict(packages_last),
             budget=Budget(MAX_FILE_STEPS, whole=self.context.budget.whole),
+            goes_on=True,
         )
         return self.interpreter.run(code).names
 
     def call(
-        self, function: Function, at: Position, args: Sequence[Value] | None, context: Context
+        self,
+        function: Function,
+        at: Position,
+        args: Sequence[Value] | None,
+        context: Context,
+        named: Mapping[str, Value] = _NO_ARGUMENTS,
     ) -> Value:
         """Return the value of a call of a function of the file, in an action's context."""
         before, self.context = self.context, context
         try:
-            return self.interpreter.call_from_outside(function, at, args)
+            return self.interpreter.call_from_outside(function, at, args, named)
         finally:
             self.context = before
 
@@ -469,6 +479,14 @@ class _PythonLaunchFile:
             "xacro.parse": self._xacro,
             "xacro.process_doc": _process_doc,
             **dict.fromkeys(_TEXTS, self._text),
+            **dict.fromkeys(_PARSERS, self._xml),
+            f"{_ELEMENT_TREE}.parse.getroot": lambda _, call: call.owner,
+            f"{_ELEMENT_TREE}.tostring": self._text_of_tree,
+            f"{_ELEMENT_TREE}.tostring.decode": lambda _, call: _document_text(call.owner),
+            **{
+                f"{_MINIDOM}.parse.{method}": lambda _, call: _document_text(call.owner)
+                for method in ("toxml", "toprettyxml")
+            },
             **dict.fromkeys(("yaml.safe_load", "yaml.load"), self._load_yaml),
             "subprocess.check_output": self._check_output,
             "subprocess.check_output.decode": lambda _, call: _printed_text(call.owner),
@@ -604,6 +622,25 @@ class _PythonLaunchFile:
             return True
         return Unknown(f"whether {posixpath.basename(path)} exists is not evaluated", call.at)
 
+    def _xml(self, evaluation: Evaluation, call: Call) -> Value:
+        """Return a document that Python's library parses from a file."""
+        path = path_text(known(call.argument(0, "source", "file")))
+        if path is None:
+            raise Undetermined("what this document is read from is not evaluated")
+        self.reads.append((Contents(path, "open"), call.at))
+        call.args = [path]
+        return record(evaluation, call)
+
+    def _text_of_tree(self, evaluation: Evaluation, call: Call) -> Value:
+        """Return the text of a tree of elements: as bytes, or as a text."""
+        tree = call.argument(0, "element")
+        if not isinstance(tree, Call) or tree.name != f"{_ELEMENT_TREE}.parse":
+            raise Undetermined("the text of these elements is not evaluated")
+        call.args = [*tree.args]
+        if call.kwargs.get("encoding") == "unicode":
+            return _document_text(call)
+        return record(evaluation, call)
+
     def _xacro(self, evaluation: Evaluation, call: Call) -> Value:
         given = call.argument(0, "input_file_name")
         if isinstance(given, Call) and not given.name.startswith("builtins.open"):
@@ -624,6 +661,13 @@ class _PythonLaunchFile:
                 contents=_contents_read(call),
             )
         return record(evaluation, call)
+
+
+def _document_text(document: Call | None) -> FileText:
+    """Return the text of a document that was parsed from a file."""
+    assert document is not None
+    contents = Contents(document.args[0], "open")
+    return FileText("the content of a file is not evaluated", document.at, contents)
 
 
 def _printed_text(call: Call | None) -> FileText:
@@ -660,6 +704,7 @@ def _add_action(evaluation: Evaluation, call: Call) -> Value:
     """Record an action that is added to a description."""
     if len(call.args) + len(call.kwargs) != 1:
         raise EvaluationFails(f"{call.short} takes one action")
+    call.args = [*map(evaluation.perhaps, [*call.args, *call.kwargs.values()])]
     record(evaluation, call)
 
 

@@ -16,7 +16,7 @@ from grader.ros.python import values as py
 from grader.ros.python.budget import Budget
 from grader.ros.python.builtins import BUILTINS, call, truth
 from grader.ros.python.expressions import Expressions
-from grader.ros.python.library import USUAL_NAMES, usual_meaning
+from grader.ros.python.library import USUAL_NAMES, is_inert, usual_meaning
 from grader.ros.python.operators import method, operate
 from grader.ros.python.parse import START, Position, make_position
 from grader.ros.python.values import call_plain, explain_unknown, known
@@ -51,6 +51,15 @@ _WHOLE = (
     ast.FormattedValue,
 )
 _CHANGING = (ast.Call, ast.NamedExpr, ast.Await, ast.Yield, ast.YieldFrom)
+# After them, nothing of the file is known.
+_CHANGING_ANYTHING = frozenset(
+    {
+        *(f"builtins.{name}" for name in ("exec", "eval", "globals", "locals", "setattr", "vars")),
+        *("os.chdir", "os.abort", "os._exit", "os.kill", "os.putenv", "os.environ.update"),
+        *("os.environ.pop", "os.environ.clear", "os.execv", "os.execvp", "sys.path.append"),
+        *("sys.path.insert", "importlib.import_module", "builtins.__import__"),
+    }
+)
 _MAX_ERRORS = 200
 _MAX_CALLS = 20_000
 _MAX_DEPTH = 30  # of calls
@@ -87,6 +96,9 @@ class Evaluation(Expressions):
         self.doubt: py.Unknown | None = None
         self.at = START  # the statement that is evaluated
         self.attempts = 0  # how many try statements are around the statement
+        # whether what follows a statement that is not evaluated is evaluated
+        self.goes_on = False
+        self.possible = 0  # how many branches around the statement may not run
         self._depth = 0  # of calls of the file's functions
 
     def doubted(self, unknown: py.Unknown) -> py.Unknown:
@@ -106,10 +118,13 @@ class Evaluation(Expressions):
     ) -> None:
         """Record once an error that certainly stops Python, such as an undefined name.
 
-        Raises it where a try may catch it.
+        Raises it where a try may catch it. Where the statement may not run, it is a doubt.
         """
         if self.attempts:
             raise py.EvaluationFails(message, at, kind)
+        if self.possible:
+            self.doubted(py.Unknown(message, at))
+            return
         if len(self.errors) < _MAX_ERRORS and all(
             message != error.message for error in self.errors
         ):
@@ -134,7 +149,7 @@ class Evaluation(Expressions):
             )
             if error.is_final or may_change:
                 raise py.Undetermined(unknown.reason, unknown.at, is_final=True) from None
-            return self.doubted(unknown)
+            return unknown if _cannot_fail(node) else self.doubted(unknown)
         except py.EvaluationFails as error:
             at = error.at or make_position(node)
             self.error(str(error), at, error.kind, argument=error.argument, lacks=error.lacks)
@@ -243,13 +258,39 @@ class Evaluation(Expressions):
                 result = self._plain(function, made)
             case py.Unknown(follows_error=True):
                 result = function
+            case _:
+                result = self._call_other(function, made)
+        return result
+
+    def _call_other(self, function: py.Value, made: py.Call) -> py.Value:
+        """Return the value of a call of what is neither a function of the file nor of the table."""
+        match function:
+            case py.Call(name="functools.partial", args=[inner, *first], kwargs=named):
+                made.args, made.kwargs = [*first, *made.args], {**named, **made.kwargs}
+                return self.call_value(inner, made)
             case _ if isinstance(function, py.PLAIN):
                 kind = type(function).__name__
                 raise py.EvaluationFails(MISSING_COMMA.format(kind))
-            case _:
-                reason = f"this call {NOT_EVALUATED}: {explain_unknown(function)}".rstrip(": ")
-                raise py.Undetermined(reason, made.at, is_final=True)
-        return result
+        reason = f"this call {NOT_EVALUATED}: {explain_unknown(function)}".rstrip(": ")
+        return self._call_outside(reason, made)
+
+    def _call_outside(self, reason: str, made: py.Call) -> py.Value:
+        """Return the value of a call of what is not evaluated: not known, as what it may change."""
+        given = [*made.args, *made.kwargs.values()]
+        callbacks = py.Function | py.BoundMethod | py.Items
+        if not self.goes_on or any(isinstance(value, callbacks) for value in given):
+            raise py.Undetermined(reason, made.at, is_final=True)
+        unknown = self.doubted(py.Unknown(reason, made.at))
+        for value in given:
+            self.make_open(value, unknown)
+        return unknown
+
+    def make_open(self, value: py.Value, unknown: py.Unknown) -> None:
+        """Keep that a list may have changed; raise Undetermined for a dict, whose keys may have."""
+        if isinstance(value, list) and unknown not in value[-1:]:
+            value.append(unknown)
+        elif isinstance(value, dict) and value:
+            raise py.Undetermined(unknown.reason, unknown.at, is_final=True)
 
     def _plain(self, function: py.PlainFunction, made: py.Call) -> py.Value:
         """Return the value of Python's own function.
@@ -277,7 +318,11 @@ class Evaluation(Expressions):
         function = self.functions.get(made.name)
         if function is None:
             reason = f"{made.name.removeprefix('builtins.')} {NOT_EVALUATED}"
-            raise py.Undetermined(reason, made.at, is_final=True)
+            if is_inert(made.name):
+                return py.InertValue(reason, made.at)
+            if made.name in _CHANGING_ANYTHING:
+                raise py.Undetermined(reason, made.at, is_final=True)
+            return self._call_outside(reason, made)
         if isinstance(function, py.PlainFunction):
             return self.call_value(function, made)
         return function(self, made)
@@ -297,13 +342,18 @@ class Evaluation(Expressions):
         bound_method = method(owner, name, self.budget)
         if bound_method is not None:
             return self.call_value(bound_method, made)
+        if isinstance(owner, py.Unknown) and owner.is_text and name in ("replace", "strip"):
+            return owner  # still a text that is not known, or that of a file
         if isinstance(owner, py.Unknown) and (
             owner.follows_error or name in python_names("class str", self.releases)
         ):
             raise owner.as_signal(owner.at)
-        raise py.Undetermined(
-            f"the method {name} of this value {NOT_EVALUATED}", made.at, is_final=True
-        )
+        reason = f"the method {name} of this value {NOT_EVALUATED}"
+        if isinstance(owner, py.InertValue):
+            return py.InertValue(owner.reason, made.at)
+        if not isinstance(owner, py.Unknown):
+            raise py.Undetermined(reason, made.at, is_final=True)
+        return self._call_outside(reason, made)
 
     def _change(self, owner: py.Value, name: str, made: py.Call) -> py.Value:
         """Run a method that changes a list or dict: Python's own."""
@@ -330,12 +380,33 @@ class Evaluation(Expressions):
                 known([owner, args])
             elif name != "append":
                 known(args if name not in ("insert", "setdefault") else args[:1])
+            if self.possible:
+                args = self._as_possible(name, args)
             return self.budget.checked(call_plain(getattr(owner, name), *args, **kwargs))
         except py.Undetermined as error:
             if error.is_final:
                 raise
             reason = f"the method {name} {NOT_EVALUATED} here: {error}"
             raise py.Undetermined(reason, made.at, is_final=True) from None
+
+    def _as_possible(self, name: str, args: list[py.Value]) -> list[py.Value]:
+        """Return what a method that may not run adds. Raises Undetermined for other changes."""
+        match name, args:
+            case "append", [item]:
+                return [self.perhaps(item)]
+            case "extend", [[*items]]:
+                return [[*map(self.perhaps, items)]]
+            case "insert" | "setdefault", [place, item]:
+                return [place, self.perhaps(item)]
+            case "update", [{**pairs}]:
+                return [{key: self.perhaps(item) for key, item in pairs.items()}]
+        raise py.Undetermined("whether it runs is not known")
+
+    def perhaps(self, value: py.Value) -> py.Value:
+        """Return a value that may not be there where it is not known whether the statement runs."""
+        if not self.possible:
+            return value
+        return py.one_of([value], f"whether this branch runs {NOT_EVALUATED}", self.at)
 
     def call_function(self, function: py.Function, made: py.Call) -> py.Value:
         """Return the value of a call of a function of the file."""
@@ -386,9 +457,51 @@ class Evaluation(Expressions):
         ):
             made = py.Call("", [right], {}, make_position(node))
             return self.call_value(py.BoundMethod(left, "__truediv__"), made)
+        if isinstance(node.op, ast.Add) and self.goes_on:
+            match left, right:
+                case (list(), py.Unknown()) | (py.Unknown(), list()):
+                    return [*spread(left), *spread(right)]
         return operate(node.op, left, right, self.budget)
 
-    KINDS: ClassVar = {**Expressions.KINDS, ast.Name: _name, ast.BinOp: _binary}
+    def _ifexp(self, node: ast.IfExp, scope: py.Scope) -> py.Value:
+        """Return the value of a conditional expression: one of both where the condition is open."""
+        value, branches = self.evaluate(node.test, scope), [node.body, node.orelse]
+        if not (self.goes_on and isinstance(value, py.Unknown)) or value.follows_error:
+            return self.evaluate(branches[not self.test(value, branches)], scope)
+        self.possible += 1
+        try:
+            values = [self.evaluate(branch, scope) for branch in branches]
+        finally:
+            self.possible -= 1
+        return py.one_of(values, value.reason, value.at)
+
+    KINDS: ClassVar = {
+        **Expressions.KINDS,
+        ast.Name: _name,
+        ast.BinOp: _binary,
+        ast.IfExp: _ifexp,
+    }
+
+
+def spread(value: py.Value) -> list[py.Value]:
+    """Return the items of a list; of one that is not known, those that may be there."""
+    if not isinstance(value, py.Unknown):
+        return [*value]
+    items = []
+    for candidate in value.candidates:
+        if isinstance(candidate, list | tuple):
+            items += [py.one_of([item], value.reason, value.at) for item in candidate]
+    return items if value.candidates else [value]
+
+
+def _cannot_fail(node: ast.expr) -> bool:
+    """Return whether an operator raises no error, whatever the values are."""
+    match node:
+        case ast.UnaryOp(op=ast.Not()) | ast.BoolOp() | ast.IfExp():
+            return True
+        case ast.Compare(ops=ops):
+            return all(isinstance(op, ast.Eq | ast.NotEq | ast.Is | ast.IsNot) for op in ops)
+    return False
 
 
 def record(evaluation: Evaluation, made: py.Call) -> py.Call:

@@ -16,6 +16,7 @@ from grader.ros.python.operators import attribute, compare, operate, subscript
 from grader.ros.python.parse import SyntaxFault, parse_expression
 from grader.ros.python.values import (
     EvaluationFails,
+    InnerScope,
     Items,
     Scope,
     Undetermined,
@@ -120,8 +121,11 @@ class Expressions:
             self.budget.measure(operand)
         return call_plain(_UNARY[type(node.op)], operand)
 
-    def elements(self, nodes: list[ast.expr], scope: Scope) -> list[Value]:
+    def elements(
+        self, nodes: list[ast.expr], scope: Scope, *, is_call: bool = False
+    ) -> list[Value]:
         """Return the values of the elements of a list, or of the arguments of a call."""
+        del is_call
         return [self.evaluate(element, scope) for element in nodes]
 
     def _list(self, node: ast.List, scope: Scope) -> Value:
@@ -133,7 +137,7 @@ class Expressions:
     def _listcomp(self, node: ast.ListComp, scope: Scope) -> Value:
         return [
             self.evaluate(node.elt, inner)
-            for inner in self.rounds(node.generators, Scope({}, scope))
+            for inner in self.rounds(node.generators, InnerScope({}, scope))
         ]
 
     def _generatorexp(self, node: ast.GeneratorExp, scope: Scope) -> Value:
@@ -142,7 +146,7 @@ class Expressions:
         The items of its first loop are evaluated now, the rest when it is iterated.
         """
         first = self.budget.items(self.evaluate(node.generators[0].iter, scope))
-        rounds = self.rounds(node.generators, Scope({}, scope), first)
+        rounds = self.rounds(node.generators, InnerScope({}, scope), first)
         return Items(self.evaluate(node.elt, inner) for inner in rounds)
 
     def _compare(self, node: ast.Compare, scope: Scope) -> Value:
@@ -181,7 +185,7 @@ class Expressions:
 
     def _call(self, node: ast.Call, scope: Scope) -> Value:
         function = self.evaluate(node.func, scope)
-        args = self.elements(node.args, scope)
+        args = self.elements(node.args, scope, is_call=True)
         kwargs: dict[str, Value] = {}
         for keyword in node.keywords:
             if keyword.arg is None:

@@ -9,6 +9,7 @@ known.
 import ast
 import builtins
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from copy import copy
 from functools import partial
 from io import StringIO
@@ -21,9 +22,10 @@ from grader.base.names import closest
 from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import RELEASES
 from grader.ros.python import values as py
+from grader.ros.python.bindings import names_bound
 from grader.ros.python.budget import Budget
 from grader.ros.python.builtins import truth
-from grader.ros.python.evaluation import MISSING_COMMA, NOT_EVALUATED, Evaluation
+from grader.ros.python.evaluation import MISSING_COMMA, NOT_EVALUATED, Evaluation, spread
 from grader.ros.python.library import (
     CONSTANTS,
     Uncertain,
@@ -38,6 +40,7 @@ from grader.ros.python.values import call_plain, charge_str, known, refuse
 from grader.ros.python.walking import walk
 
 _PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
+_NO_NAMES: Mapping[str, py.Value] = {}
 MAX_FILE_STEPS = 100_000  # what the evaluation of one file may use
 _IN_ANNOTATIONS = (
     ast.Attribute,
@@ -60,6 +63,16 @@ class _ReturnFlow(py.EvaluationSignal):
     def __init__(self, value: py.Value) -> None:
         super().__init__()
         self.value = value
+
+
+class _RaiseFlow(py.EvaluationSignal):
+    """A raise statement that may not run."""
+
+
+# What a statement may leave that is not evaluated, so that what follows is not known.
+_LEAVING = (ast.Return, ast.Global, ast.Nonlocal, ast.Yield, ast.YieldFrom, ast.Await)
+_LEAVING_LOOPS = (ast.Break, ast.Continue)
+_OF_BRANCHES = "which of these branches runs is not evaluated"
 
 
 _ENVIRONMENTS = ("os.environ", "environ")
@@ -140,6 +153,40 @@ def _names_bound(body: Sequence[ast.stmt]) -> set[str] | None:
     return names
 
 
+def _without_end(node: ast.Try) -> ast.Try:
+    """Return a try statement without its finally."""
+    rest = copy(node)
+    rest.finalbody = []
+    return rest
+
+
+def _fits(subject: py.Value, pattern: ast.pattern) -> bool | None:
+    """Return whether a pattern is certainly that of a value, or certainly not."""
+    match pattern:
+        case ast.MatchAs(pattern=None):
+            return True
+        case ast.MatchOr(patterns=patterns):
+            fits = [_fits(subject, each) for each in patterns]
+            return True in fits or (None if None in fits else False)
+        case ast.MatchValue(value=ast.Constant(value=value)) if isinstance(subject, str | int):
+            return bool(subject == value)
+    return None
+
+
+def _join_ends(ends: Sequence[dict[str, py.Value]], at: Position) -> dict[str, py.Value]:
+    """Return the names after branches: each has the value of all, or is one of several."""
+    joined: dict[str, py.Value] = {}
+    for name in dict.fromkeys(chain.from_iterable(ends)):
+        values = [end[name] for end in ends if name in end]
+        is_same = len(values) == len(ends) and all(
+            value is values[0] or (isinstance(value, str) and value == values[0])
+            for value in values
+        )
+        reason = f"which branch binds {name} {NOT_EVALUATED}"
+        joined[name] = values[0] if is_same else py.one_of(values, reason, at)
+    return joined
+
+
 class Interpreter(Evaluation):
     """Adds the statements of a file to its expressions."""
 
@@ -152,6 +199,7 @@ class Interpreter(Evaluation):
         budget: Budget | None = None,
         exports: Mapping[str, Collection[str]] | None = None,
         local_modules: Collection[str] = (),
+        goes_on: bool = False,
     ) -> None:
         """`functions` may be called, by full name.
 
@@ -159,12 +207,15 @@ class Interpreter(Evaluation):
 
         `stand_ins` are texts that stand for folders that are not known; `exports` has the names of
         modules, besides those of Python itself; `local_modules` are beside the file, and imported
-        before any other.
+        before any other. With `goes_on`, what follows a statement that is not evaluated is
+        evaluated, with what that may change as open values.
         """
         super().__init__(functions, names, budget or Budget(MAX_FILE_STEPS))
         self.budget.stand_ins = stand_ins
         self.exports = exports or {}
         self.local_modules = local_modules
+        self.goes_on = goes_on
+        self.chosen = 0  # how many conditions are around the statement, which hold
 
     def run(self, code: Code) -> py.Scope:
         """Evaluate a whole file and return the scope of its names. Never raises."""
@@ -176,7 +227,11 @@ class Interpreter(Evaluation):
         return self.module
 
     def call_from_outside(
-        self, function: py.Function, at: Position, args: Sequence[py.Value] | None = ()
+        self,
+        function: py.Function,
+        at: Position,
+        args: Sequence[py.Value] | None = (),
+        named: Mapping[str, py.Value] = _NO_NAMES,
     ) -> py.Value:
         """Return the value of a call of one of the file's functions. Never raises.
 
@@ -189,7 +244,7 @@ class Interpreter(Evaluation):
         recorded, doubt = list(self.errors), self.doubt
         try:
             return self.call_function(
-                function, py.Call("", event if args is None else list(args), {}, at)
+                function, py.Call("", event if args is None else list(args), dict(named), at)
             )
         except (py.EvaluationSignal, RecursionError) as error:
             return self._stop(error, at)
@@ -208,25 +263,82 @@ class Interpreter(Evaluation):
         for node in body:
             self.budget.charge(1)
             self.at = make_position(node)
-            kind = self._STATEMENTS.get(type(node))
-            if kind is None:
-                raise py.Undetermined(
-                    f"a statement of the kind {type(node).__name__} is not evaluated",
-                    self.at,
-                    is_final=True,
-                )
+            kind = self._STATEMENTS.get(type(node), Interpreter._unsupported)
             try:
                 kind(self, node, scope)
             except py.EvaluationFails as error:  # of the statement itself, such as an assignment
                 at = error.at or make_position(node)
                 self.error(str(error), at, error.kind, argument=error.argument, lacks=error.lacks)
             except py.Undetermined as error:
-                if error.is_final:
-                    raise
-                reason = f"this statement is not evaluated: {error}"
-                raise py.Undetermined(
-                    reason, error.at or make_position(node), is_final=True
-                ) from None
+                what = "" if error.is_final else f"this statement {NOT_EVALUATED}: "
+                unknown = py.Unknown(f"{what}{error}", error.at or make_position(node))
+                self._skip(node, unknown, scope)
+
+    def _unsupported(self, node: ast.stmt, _: py.Scope) -> None:
+        reason = f"a statement of the kind {type(node).__name__} {NOT_EVALUATED}"
+        raise py.Undetermined(reason, self.at, is_final=True)
+
+    def _skip(self, node: ast.stmt, unknown: py.Unknown, scope: py.Scope) -> None:
+        """Go on after a statement that is not evaluated: what it may change is open then.
+
+        Raises Undetermined where it may change more, or where what follows may not run.
+        """
+        parts = own_nodes(node) if not isinstance(node, ast.FunctionDef | ast.ClassDef) else [node]
+        is_loop = isinstance(node, ast.For | ast.While)
+        leaving = _LEAVING if is_loop else (*_LEAVING, *_LEAVING_LOOPS)
+        names = names_bound(parts)
+        if not self.goes_on or "*" in names or any(isinstance(part, leaving) for part in parts):
+            raise py.Undetermined(unknown.reason, unknown.at, is_final=True)
+        for part in parts:
+            if isinstance(part, ast.Name) and part.id not in names:
+                self._make_reached_open(part.id, scope, unknown)
+        self.doubted(unknown)
+        scope.names.update(dict.fromkeys(names, unknown))
+
+    def _make_reached_open(self, name: str, scope: py.Scope, unknown: py.Unknown) -> None:
+        """Keep that a name's value may have changed, and of a function what its scope has."""
+        with suppress(KeyError, py.EvaluationFails):
+            value = scope.find(name)
+            self.make_open(value, unknown)
+            if isinstance(value, py.Function):
+                for shared in [*value.scope.names.values()]:
+                    if isinstance(shared, list):
+                        self.make_open(shared, unknown)
+
+    def _perhaps(
+        self, branches: Sequence[Callable[[], None]], reason: py.EvaluationSignal, scope: py.Scope
+    ) -> None:
+        """Run branches of which one runs, and keep as open what they do not agree on.
+
+        Raises _ReturnFlow where all return, and Undetermined where branches are not evaluated.
+        """
+        at = reason.at or self.at
+        if not self.goes_on or (isinstance(reason, py.Undetermined) and reason.is_final):
+            raise py.Undetermined(str(reason), at, is_final=True)
+        before, ends, returned = dict(scope.names), list[dict[str, py.Value]](), list[py.Value]()
+        self.possible += 1
+        try:
+            for branch in branches:
+                scope.names.clear()
+                scope.names.update(before)
+                try:
+                    branch()
+                    ends.append(dict(scope.names))
+                except _ReturnFlow as flow:
+                    returned.append(flow.value)
+                except _RaiseFlow:
+                    continue
+        finally:
+            self.possible -= 1
+        if not ends:
+            if not returned:
+                raise _RaiseFlow
+            raise _ReturnFlow(py.one_of(returned, _OF_BRANCHES, at))
+        scope.names.clear()
+        scope.names.update(_join_ends(ends, at))
+        if returned:
+            scope.returned += returned
+            self.possible += 1  # until the function ends
 
     def _functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
         at = make_position(node)
@@ -281,11 +393,20 @@ class Interpreter(Evaluation):
     def _function_body(self, node: ast.FunctionDef, scope: py.Scope) -> py.Value:
         if any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in own_nodes(node)):
             return py.Items(_stop_at(node))
+        possible, value = self.possible, None
         try:
             self._block(node.body, scope)
         except _ReturnFlow as flow:
-            return flow.value
-        return None
+            value = flow.value
+        except _RaiseFlow:
+            if not scope.returned:
+                raise
+            return py.one_of(scope.returned, _OF_BRANCHES, self.at)
+        finally:
+            self.possible = possible
+        if scope.returned:
+            return py.one_of([*scope.returned, value], _OF_BRANCHES, self.at)
+        return value
 
     def _return(self, node: ast.Return, scope: py.Scope) -> None:
         raise _ReturnFlow(self.evaluate(node.value, scope) if node.value is not None else None)
@@ -302,8 +423,22 @@ class Interpreter(Evaluation):
 
     def _if(self, node: ast.If, scope: py.Scope) -> None:
         branches = [*node.body, *node.orelse]
-        if not (_reads_environment(node.test) and self._skip_branches(branches, scope)):
-            self._block(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
+        if _reads_environment(node.test) and self._skip_branches(branches, scope):
+            return
+        value = self.evaluate(node.test, scope)
+        try:
+            holds = truth(value)
+        except py.Undetermined as error:
+            if error.follows_error:
+                raise
+            bodies = (node.body, node.orelse)
+            self._perhaps([partial(self._block, body, scope) for body in bodies], error, scope)
+        else:
+            self.chosen += 1
+            try:
+                self._block(node.body if holds else node.orelse, scope)
+            finally:
+                self.chosen -= 1
 
     def _skip_branches(self, branches: Sequence[ast.stmt], scope: py.Scope) -> bool:
         """Make unknown what branches bind of which one runs; return False if they do more.
@@ -339,25 +474,60 @@ class Interpreter(Evaluation):
             self.doubted(items)
             items = []
         for item in self.budget.items(items):
-            self.bind(node.target, item, scope)
-            self._block(node.body, scope)
+            if not (isinstance(item, py.Unknown) and item.candidates):
+                self._round(node, item, scope)
+                continue
+            rounds = [partial(self._round, node, each, scope) for each in item.candidates]
+            self._perhaps([*rounds, lambda: None], item.as_signal(item.at), scope)
         self._block(node.orelse, scope)
 
+    def _round(self, node: ast.For, item: py.Value, scope: py.Scope) -> None:
+        self.bind(node.target, item, scope)
+        self._block(node.body, scope)
+
+    def _while(self, node: ast.While, scope: py.Scope) -> None:
+        """Run the body once, as what may run or not, with what it binds as open values."""
+        reason = py.Undetermined(f"how often this loop runs {NOT_EVALUATED}", self.at)
+        scope.names.update(dict.fromkeys(names_bound(own_nodes(node)), reason.as_unknown(self.at)))
+        self._perhaps([partial(self._block, node.body, scope), lambda: None], reason, scope)
+        self._block(node.orelse, scope)
+
+    def _match(self, node: ast.Match, scope: py.Scope) -> None:
+        """Run the case of a known value, or each of those that may be meant."""
+        subject, cases = self.evaluate(node.subject, scope), list[ast.match_case]()
+        for case in node.cases:
+            scope.names.update(
+                dict.fromkeys(names_bound(walk(case.pattern)), py.Unknown(_OF_BRANCHES, self.at))
+            )
+            fits = None if case.guard else _fits(subject, case.pattern)
+            if fits is not False:
+                cases.append(case)
+            if fits:
+                break
+        if len(cases) == 1 and fits:
+            self._block(cases[0].body, scope)
+        elif cases:
+            bodies = [partial(self._block, case.body, scope) for case in cases]
+            reason = py.Undetermined(_OF_BRANCHES, self.at)
+            self._perhaps(bodies if fits else [*bodies, lambda: None], reason, scope)
+
     def _with(self, node: ast.With, scope: py.Scope) -> None:
-        value, target = (
-            self.evaluate(node.items[0].context_expr, scope),
-            node.items[0].optional_vars,
-        )
+        first, *others = node.items
+        body = node.body
+        if others:  # are as a statement in the statement
+            body = [ast.copy_location(ast.With(items=others, body=node.body), node)]
+        value, target = self.evaluate(first.context_expr, scope), first.optional_vars
         # Such as open() of a file that does not exist.
         has_failed = isinstance(value, py.Unknown) and value.follows_error
         if isinstance(value, py.Call):
             self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, self.at))
-        if len(node.items) > 1 or not (isinstance(value, py.Call | StringIO) or has_failed):
+        is_open = self.goes_on and isinstance(value, py.Unknown)
+        if not (isinstance(value, py.Call | StringIO) or has_failed or is_open):
             raise py.Undetermined("this use of with is not evaluated", self.at, is_final=True)
         if target is not None:
             self.bind(target, value, scope)
         try:
-            self._block(node.body, scope)
+            self._block(body, scope)
         finally:
             if isinstance(value, StringIO):
                 value.close()
@@ -406,7 +576,11 @@ class Interpreter(Evaluation):
     def _try(self, node: ast.Try, scope: py.Scope) -> None:
         """Run a body, and the handler of what it certainly raises; stop where it may raise more."""
         if node.finalbody:
-            raise py.Undetermined("a try with finally is not evaluated", self.at, is_final=True)
+            try:
+                self._try(_without_end(node), scope)
+            finally:
+                self._block(node.finalbody, scope)
+            return
         branches = [*node.body, *node.orelse]
         for handler in node.handlers:
             branches += handler.body
@@ -420,10 +594,17 @@ class Interpreter(Evaluation):
             raised = error
         finally:
             self.attempts -= 1
-        if self.doubt is not None:
-            raise py.Undetermined(self.doubt.reason, self.doubt.at, is_final=True)
-        self.doubt = doubt
-        if raised is None:
+        reason, self.doubt = self.doubt, doubt
+        if reason is not None:
+            bodies = [node.orelse, *(handler.body for handler in node.handlers)]
+            for handler in node.handlers:
+                self._bind_error(handler, scope)
+            self._perhaps(
+                [partial(self._block, body, scope) for body in bodies],
+                reason.as_signal(reason.at),
+                scope,
+            )
+        elif raised is None:
             self._block(node.orelse, scope)
         else:
             self._handle(raised, node.handlers, scope)
@@ -435,13 +616,15 @@ class Interpreter(Evaluation):
         for handler in handlers:
             kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
             if any(_catches(kind, raised, self.at) for kind in kinds):
-                if handler.name:
-                    scope.names[handler.name] = py.Unknown(
-                        "an error is not evaluated", make_position(handler)
-                    )
+                self._bind_error(handler, scope)
                 self._block(handler.body, scope)
                 return
         raise raised
+
+    def _bind_error(self, handler: ast.ExceptHandler, scope: py.Scope) -> None:
+        if handler.name:
+            at = make_position(handler)
+            scope.names[handler.name] = py.Unknown("an error is not evaluated", at)
 
     def _assert(self, node: ast.Assert, scope: py.Scope) -> None:
         if not truth(self.evaluate(node.test, scope)):
@@ -450,6 +633,11 @@ class Interpreter(Evaluation):
     def _raise(self, node: ast.Raise, _: py.Scope) -> None:
         raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
         kind = _BUILT_IN.get(raised.id) if isinstance(raised, ast.Name) else None
+        if self.goes_on and not self.attempts and (self.possible or self.chosen):
+            # What a launch file refuses on purpose is no mistake in it.
+            reason = f"whether the file raises an error here {NOT_EVALUATED}"
+            self.doubted(py.Unknown(reason, self.at))
+            raise _RaiseFlow(reason, self.at)
         if isinstance(kind, type) and issubclass(kind, Exception):
             self.error(f"the file raises {kind.__name__} here", self.at, kind)
         raise py.Undetermined("which error is raised here is not evaluated", self.at, is_final=True)
@@ -526,15 +714,21 @@ class Interpreter(Evaluation):
             raise py.Undetermined(f"{owner.name}[...] {NOT_EVALUATED}")
         return function(self, made)
 
-    def elements(self, nodes: Sequence[ast.expr], scope: py.Scope) -> list[py.Value]:
+    def elements(
+        self, nodes: Sequence[ast.expr], scope: py.Scope, *, is_call: bool = False
+    ) -> list[py.Value]:
         """Return the values of the elements of a list, or of the arguments of a call."""
         values: list[py.Value] = []
         for node in chain.from_iterable(map(self._separated, nodes)):
             if not isinstance(node, ast.Starred):
                 values.append(self.evaluate(node, scope))
                 continue
+            value = self.evaluate(node.value, scope)
+            if isinstance(value, py.Unknown) and self.goes_on and not is_call:
+                values += spread(value)
+                continue
             try:
-                values += self.budget.items(self.evaluate(node.value, scope))
+                values += self.budget.items(value)
             except py.Undetermined as error:
                 raise py.Undetermined(
                     str(error), error.at or make_position(node), is_final=True
@@ -593,8 +787,15 @@ class Interpreter(Evaluation):
     def _dictcomp(self, node: ast.DictComp, scope: py.Scope) -> py.Value:
         return {
             known(self.evaluate(node.key, inner)): self.evaluate(node.value, inner)
-            for inner in self.rounds(node.generators, py.Scope({}, scope))
+            for inner in self.rounds(node.generators, py.InnerScope({}, scope))
         }
+
+    def _namedexpr(self, node: ast.NamedExpr, scope: py.Scope) -> py.Value:
+        value = self.evaluate(node.value, scope)
+        while isinstance(scope, py.InnerScope) and scope.outer is not None:
+            scope = scope.outer
+        self.bind(node.target, value, scope)
+        return value
 
     def _lambda(self, node: ast.Lambda, scope: py.Scope) -> py.Value:
         return self.function(
@@ -631,7 +832,7 @@ class Interpreter(Evaluation):
             return
         if not isinstance(owner, py.PLAIN) or isinstance(key, slice):
             refuse(owner, "this assignment to an item is not supported")
-        call_plain(setitem, owner, key, value)
+        call_plain(setitem, owner, key, self.perhaps(value))
         self.budget.charge(len(owner))
 
     def _assign(self, node: ast.Assign, scope: py.Scope) -> None:
@@ -652,7 +853,9 @@ class Interpreter(Evaluation):
         if not isinstance(before, py.PLAIN):
             refuse(before, "this value is not supported")
         if isinstance(before, list) and isinstance(node.op, ast.Add):
-            before.extend(list(self.budget.items(value)))
+            is_open = self.goes_on and isinstance(value, py.Unknown)
+            items = spread(value) if is_open else list(self.budget.items(value))
+            before.extend(map(self.perhaps, items))
             self.budget.measure(before, "holds")
         elif isinstance(before, list | dict):
             raise py.Undetermined("this operator is not supported")
@@ -668,6 +871,7 @@ class Interpreter(Evaluation):
         ast.FormattedValue: _formattedvalue,
         ast.DictComp: _dictcomp,
         ast.Lambda: _lambda,
+        ast.NamedExpr: _namedexpr,
     }
 
     # The statements that are evaluated.
@@ -678,6 +882,8 @@ class Interpreter(Evaluation):
         ast.Return: _return,
         ast.If: _if,
         ast.For: _for,
+        ast.While: _while,
+        ast.Match: _match,
         ast.With: _with,
         ast.Assign: _assign,
         ast.AugAssign: _augassign,

@@ -106,6 +106,24 @@ CONSTANTS = {
 }
 
 
+# Modules of Python whose functions change nothing that a file or launch sees, and cannot fail as
+# they are used; and those of their functions that may.
+_INERT = (
+    *("datetime", "getpass", "locale", "logging", "platform", "random", "socket", "textwrap"),
+    *("time", "typing", "types", "uuid", "warnings"),
+)
+_NOT_INERT = ("logging.config", "random.shuffle", "socket.create_connection")
+
+
+def is_inert(name: str) -> bool:
+    """Return whether a function of Python, by its full name, changes nothing and cannot fail.
+
+    >>> is_inert("datetime.datetime.now"), is_inert("random.shuffle"), is_inert("os.remove")
+    (True, False, False)
+    """
+    return name.partition(".")[0] in _INERT and not name.startswith(_NOT_INERT)
+
+
 def usual_meaning(name: str) -> py.QualifiedName:
     """Return what a name usually means that is used without its import."""
     full = USUAL_NAMES.get(name)
@@ -150,7 +168,7 @@ def _import_error(module: str, name: str, releases: tuple[Release, ...]) -> str 
     top = full.split(".")[0]
     is_there = top in _INSTALLED_WITH_ROS or full in ("setuptools", "distutils")
     is_there |= f"{module}.{name}" in {*modules, "distutils.core.setup"}
-    if is_there or (full in modules and (not module or name == "*")):
+    if is_there or full in modules:
         return None
     if top in modules or top in _NOT_MISSPELT:
         return Uncertain.IMPORT
@@ -180,7 +198,7 @@ def attribute_error(module: str, name: str, releases: tuple[Release, ...] = ()) 
 
 def imported_names(
     module: str, alias: ast.alias, exports: Mapping[str, Collection[str]]
-) -> dict[str, py.QualifiedName]:
+) -> dict[str, py.Value]:
     """Return what `import name` or `from module import name` binds.
 
     The name * represents unknown names.
@@ -190,7 +208,8 @@ def imported_names(
             name or "*": py.QualifiedName(f"{module}.{name}") for name in exports.get(module, [""])
         }
     if module:
-        return {alias.asname or alias.name: py.QualifiedName(f"{module}.{alias.name}")}
+        full = f"{module}.{alias.name}"
+        return {alias.asname or alias.name: CONSTANTS.get(full, py.QualifiedName(full))}
     top = alias.name.split(".")[0]
     if alias.asname:
         return {alias.asname: py.QualifiedName(alias.name)}

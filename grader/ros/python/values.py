@@ -7,7 +7,7 @@ the ways to a value.
 """
 
 import ast
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from io import StringIO
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Literal, NoReturn
@@ -136,6 +136,7 @@ class Unknown:
     """
 
     is_text = False  # whether it certainly is a text
+    candidates: tuple[Value, ...] = ()  # the values of which it is one, if it is anything
 
     def __init__(self, reason: str, at: "Position", *, follows_error: bool = False) -> None:
         self.reason, self.at, self.follows_error = reason, at, follows_error
@@ -153,6 +154,20 @@ class Unknown:
 
     def __hash__(self) -> int:
         return hash((self.reason, self.at))
+
+
+class InertValue(Unknown):
+    """What a function returns that certainly changes nothing, and whose methods do not either."""
+
+
+def one_of(values: Sequence[Value], reason: str, at: "Position") -> Unknown:
+    """Return a value that is one of several, or that may not be there where it is the only one."""
+    unknown = Unknown(reason, at)
+    for value in values:
+        is_open = isinstance(value, Unknown) and value.candidates
+        unknown.candidates += value.candidates if is_open else (value,)
+    unknown.is_text = all(isinstance(value, str) for value in unknown.candidates)
+    return unknown
 
 
 class ClassBody(Unknown):
@@ -266,6 +281,7 @@ class Scope:
         local: frozenset[str] = frozenset(),
     ) -> None:
         self.names, self.outer, self.local = names, outer, local
+        self.returned: list[Value] = []  # by branches of which it is not known whether they run
 
     def find(self, name: str) -> Value:
         """Return the value of a name.
@@ -280,6 +296,10 @@ class Scope:
                 raise EvaluationFails(f"the name {name!r} is used before it has a value")
             scope = scope.outer
         raise KeyError(name)
+
+
+class InnerScope(Scope):
+    """The names that a comprehension binds."""
 
 
 class PlainFunction:
