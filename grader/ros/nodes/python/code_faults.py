@@ -1013,7 +1013,7 @@ def _ends_without_value(
 ) -> Iterator[tuple[AnyFunction | ast.Return, bool]]:
     """Yield where a function ends without a value: a return, or the function itself for its end.
 
-    With each whether it certainly gets there on some path.
+    Each comes with whether it certainly gets there on some path.
     """
     for statement in _own_statements(function.body):
         if isinstance(statement, ast.Return) and _is_none(statement.value):
