@@ -168,7 +168,7 @@ def _near_key(workspace: Workspace, name: str) -> str | None:
 class _NamedPackage(NamedTuple):
     """A package that a file names, and where.
 
-    `is_compared`: whether the rule of files compares a similar name.
+    `is_compared` says whether the rule of files compares a similar name.
     """
 
     name: str
