@@ -255,7 +255,7 @@ def _values(
 def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
     """Return the first of the facts that the reference passes.
 
-    Or what it does not pass, and why.
+    If it passes none, return what it does not pass, and why.
     """
     reasons = []
     for one in (fact, *fact.otherwise):
@@ -580,7 +580,7 @@ class _Layout(NamedTuple):
     def _carried(self, fact: Fact) -> Iterator[Mapping[str, Any]]:
         """Yield what counts instead of a fact, and after which mistakes.
 
-        Nothing if no criteria are about these.
+        It yields nothing if no criteria are about these.
         """
         for carried_fact in fact.carried:
             causes = [

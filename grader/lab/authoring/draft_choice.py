@@ -80,8 +80,8 @@ class DraftChoice(NamedTuple):
     def freed(self, fact: Fact, robot: Configuration | None) -> Fact | Omission | None:
         """Return a fact that asks for none of the free names.
 
-        None if nothing is left of it, and what is omitted where no place in the tree names
-        a link.
+        It is None if nothing is left of it, and what is omitted where no place in the tree names a
+        link.
         """
         if not self.free:
             return fact

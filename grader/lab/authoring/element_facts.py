@@ -219,7 +219,7 @@ def _carried_from_names(
 def _root_without_launch_files(solution: Solution) -> Element | None:
     """Return the <robot> if no launch file gives arguments to xacro.
 
-    None where there is no robot.
+    It is None where there is no robot.
     """
     urdf, submission = solution.submission.urdf, solution.submission
     if not isinstance(urdf, Read) or not urdf.is_expanded:

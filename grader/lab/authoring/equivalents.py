@@ -121,7 +121,7 @@ def _move_frames(tree: Element, rules: RewritingRules) -> bool:
 def _free_move(tree: Element, joint: Element, rules: RewritingRules) -> Transform | None:
     """Return a change of a child's frame that leaves the motion of the joint as it is.
 
-    None if there is none.
+    It is None if there is none.
 
     @root, @tip and @moved:2 name links by structure, whose frames are those that move, and those at
     the ends.

@@ -143,7 +143,7 @@ def _rounded(vector: Sequence[float], digits: int = 6) -> list[float]:
 def _visual_facts(link: Link) -> Facts:
     """Yield what a link shows.
 
-    The place and colour of a shape only if no other shape of the link is of its kind.
+    The place and colour of a shape are yielded only if no other shape of the link is of its kind.
     """
     if len(link.visuals) > MAX_SHAPES:
         yield Omission(f"{link.name} visuals", f"it has more than {MAX_SHAPES}")
@@ -221,7 +221,7 @@ def _axis(visual: Visual) -> dict[str, Any]:
 def _body_facts(link: Link) -> Facts:
     """Yield the mass and inertia of a link, and its collision shapes.
 
-    Or that these are those that it shows.
+    If these are those that it shows, yield that.
     """
     if link.inertial is not None:
         least = abs(link.inertial.mass) * _MASS_SHARE

@@ -51,7 +51,7 @@ def _for_every_node(workspace: Workspace, path: str, tree: YamlNode) -> str | No
 def _in_flow_style(tree: YamlNode) -> str | None:
     """Return a file as one mapping in braces.
 
-    None for texts that would mean something else there.
+    It is None for texts that would mean something else there.
     """
     text = _flow(tree)
     with suppress(ValueError):

@@ -116,7 +116,7 @@ class LaunchConnections:
     def _outer_topics(self, nodes: Sequence[GraphNode]) -> tuple[list[str], list[str]]:
         """Return the topics that own nodes read from other nodes, and those that they send these.
 
-        Also those of sensors and commands, whose other nodes may be on the robot.
+        Those of sensors and commands, whose other nodes may be on the robot, are among them.
         """
         own_ends = [
             end for node in nodes if self._is_own(node) for end in node.ends if not end.doubt

@@ -64,7 +64,7 @@ def find_kind(family: str) -> str:
 def draw(mutants: Sequence[Mutant], most: int, seed: int) -> list[Mutant]:
     """Return at most so many mutants, in their order.
 
-    Of each family as many, as far as there are so many, drawn by the seed.
+    Each family has as many, as far as there are so many, and the seed draws them.
     """
     if len(mutants) <= most:
         return [*mutants]

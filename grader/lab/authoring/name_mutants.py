@@ -47,7 +47,7 @@ def name_changes(
 ) -> Iterator[MutantEdit]:
     """Yield the changes of a file of a package.
 
-    First those of its format, then the names in it that are compared.
+    Those of its format come first, then those of the names in it that are compared.
     """
     name = source.path.rpartition("/")[2]
     if name == CMAKE:

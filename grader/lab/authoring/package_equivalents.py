@@ -90,8 +90,8 @@ def read_text(submission: Submission, path: str) -> str:
 def _in_other_language(submission: Submission, package: Package, ending: str) -> Files:
     """Return the one launch file of a package in another language.
 
-    And the build file that installs it. Nothing where not all of it is known, or where another
-    file names it.
+    The build file that installs it is there, too. There is none where not all of it is known, or
+    where another file names it.
     """
     paths = [path for path in package.launch_files if not path.startswith("test/")]
     before = _language_ending(paths[0]) if len(paths) == 1 else ""
@@ -178,7 +178,7 @@ def _node_table(node: StartedNode) -> dict[str, Any] | None:
 def _parameter_rows(node: StartedNode) -> list[dict[str, Any]] | None:
     """Return the parameters of a node as rows of a launch file.
 
-    None where not all of them are plain.
+    It is None where not all of them are plain.
     """
     rows: list[dict[str, Any]] = []
     for given in node.parameters or ():
@@ -275,7 +275,7 @@ def _in_python(word: str) -> str:
 def _built_by_cmake(submission: Submission, package: Package) -> Files:
     """Return the files of a package that CMake builds in place of setup.py.
 
-    Nothing where it has programs or modules, or is no package of Python.
+    There are none where it has programs or modules, or is no package of Python.
     """
     setup = package.path(SETUP)
     manifest = package.manifest
@@ -412,7 +412,7 @@ def _replace_name(
 def _with_renamed_files(submission: Submission, package: Package, named: Collection[str]) -> Files:
     """Return the files of parameters and worlds under other names.
 
-    And all files that name them.
+    All files that name them are among these.
     """
     files: dict[str, str | None] = {}
     texts: dict[str, str] = {}

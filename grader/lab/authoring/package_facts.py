@@ -466,7 +466,7 @@ def _parameter_fact(node: str, name: str, **arguments: Any) -> Fact:
 def _sizes_meant(name: str, links: Sequence[str]) -> tuple[str, Iterable[tuple[str, ...]]] | None:
     """Return what a parameter measures by its name, and of which links it may be.
 
-    None for any other parameter.
+    It is None for any other parameter.
     """
     if "radius" in name:
         return "radius", ((link,) for link in links)
@@ -563,7 +563,7 @@ def _install_facts(
 ) -> Iterator[Fact]:
     """Yield that a build installs a file of each ending, from whatever folder.
 
-    Not of the `known` endings, of which others are installed anyway.
+    The `known` endings, of which others are installed anyway, are not among these.
     """
     endings: dict[str, None] = {}
     for path in paths:
@@ -641,7 +641,7 @@ def _lifecycle_nodes(submission: Submission, launch: Launch) -> list[str]:
 def _complete_fact(launch: Launch, name: str, shown: str) -> Fact:
     """Return that a launch file is there, installed, and finds the files that it names.
 
-    Of one of which not all files are known, that none is in a wrong place.
+    Of one of which not all files are known, return that none is in a wrong place.
     """
     fact = _package_fact("launch_complete", name, name=name)
     title = f"a build installs {shown}"

@@ -358,7 +358,7 @@ class Trial:
     def _must_pass(self, submission: Submission, family: str) -> Collection[str]:
         """Return the criteria on the robot that must still pass.
 
-        For a URDF on its own, those that need no package.
+        For a URDF on its own, these are those that need no package.
         """
         others = ("package", "submission") if submission.is_single else ("package",)
         return [
@@ -487,7 +487,7 @@ class RubricTest(NamedTuple):
     def lost(self) -> tuple[str, ...]:
         """The criteria that the reference does not pass.
 
-        Without extra credit and those for manual grading.
+        Extra credit and criteria for manual grading are not among them.
         """
         return tuple(result.criterion.id for result in self.reference.unearned)
 
