@@ -27,7 +27,7 @@ class _ExampleBlock(NamedTuple):
 def explain_kind(kind: Kind) -> str:
     """Return what ROS 2 does about a problem and how to fix the file, in one line.
 
-    The title if that is unknown.
+    It is the title if that is unknown.
     """
     entry = _family(_read_family(kind.code)).get(kind.code, {})
     return " ".join(entry.get("explanation", kind.title).split())
@@ -36,7 +36,7 @@ def explain_kind(kind: Kind) -> str:
 def example_blocks(name: str) -> Iterator[_ExampleBlock]:
     """Yield a check's row in a rubric, and the example of a check, a rule or a code.
 
-    Only if it is known; that of a code may be that of one of its rules.
+    The example is there only if it is known; that of a code may be that of one of its rules.
     """
     if name in RULES:
         yield from make_blocks(RULES[name]._asdict())

@@ -49,7 +49,7 @@ _NUMBER_OF_ID = re.compile(r" \(\d+\)$")  # of equal ones
 def render_rubric_test(test: RubricTest, width: int) -> str:
     """Return the result in lines of at most this width.
 
-    What was graded, what is wrong, the score last.
+    They say what was graded and what is wrong; the score comes last.
     """
     lines = [f"{test.reference.rubric.id}: {test.reference.rubric.title}", "", *_count_lines(test)]
     if test.lost:
