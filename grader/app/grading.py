@@ -1,6 +1,6 @@
 """A submission that is graded as the options of `grader grade` say.
 
-Once, or with --watch again and again.
+It is graded once, or with --watch again and again.
 """
 
 import os

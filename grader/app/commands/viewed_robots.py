@@ -1,6 +1,6 @@
 """The robots that `grader view` shows.
 
-One that is graded against a rubric, or all that an inspection finds.
+This is one that is graded against a rubric, or all that an inspection finds.
 """
 
 from collections.abc import Callable, Mapping, Sequence
