@@ -30,7 +30,7 @@ from grader.classroom.results.results import StoredResult, hash_values
 from grader.classroom.run.preloading import PRELOAD
 from grader.files.reading import hash_bytes
 from grader.lab.checks.outcome import Outcome
-from grader.lab.grading.grade import grade as grade_submission
+from grader.lab.grading.grade import grade as grade_opened
 from grader.lab.grading.report import Grade, Report, Result
 from grader.lab.submission.submission import Submission
 from grader.report.formats import Format, render
@@ -163,7 +163,7 @@ def _graded_again(
         if Reason.UNREADABLE in grade.concerns:
             return report._replace(notes=(f"{stored.reason}. {_SUBMIT_AGAIN}",))
         return report
-    report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
+    report = grade_opened(book.rubric, submission, book.settings.parts, is_one_of_class=True)
     if kept is None or book.rubric.hints == "none" or not report.has_failures:
         return report
     return kept.with_hints(report, submission, hash_values(stored.context, book.rubric.sha256))
