@@ -331,11 +331,11 @@ def test_only_rules_say_that_something_does_not_agree() -> None:
     assert places == []
 
 
-def test_check_families_do_not_import_each_other() -> None:
-    """Only the registry imports families of checks."""
-    families = {check.function.__module__ for check in own_checks()}
-    for family in families:
-        assert not set(imports(family)) & (families - {family}), family
+def test_modules_of_checks_do_not_import_each_other() -> None:
+    """Only the registry imports modules of checks."""
+    modules = {check.function.__module__ for check in own_checks()}
+    for module in modules:
+        assert not set(imports(module)) & (modules - {module}), module
 
 
 def test_every_package_has_a_layer() -> None:
