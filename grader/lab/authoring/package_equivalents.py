@@ -51,32 +51,36 @@ ament_package()
 def package_equivalents(
     submission: Submission, named: Collection[str], robot_files: Sequence[str]
 ) -> Iterator[tuple[str, Files]]:
-    """Yield each family with the files that it changes; `named` are the texts of the rubric."""
+    """Yield each rewriting with the files that it changes; `named` are the texts of the rubric."""
     packages = [*submission.lab_packages.values()]
     for language, ending in _ENDING_BY_LANGUAGE.items():
-        yield from as_family(
+        yield from as_rewriting(
             language, (_in_other_language(submission, package, ending) for package in packages)
         )
-    yield from as_family(
+    yield from as_rewriting(
         BUILT_BY_CMAKE, (_built_by_cmake(submission, package) for package in packages)
     )
-    yield from as_family(_UNNAMED, (_without_names(submission, package) for package in packages))
-    yield from as_family(
+    yield from as_rewriting(_UNNAMED, (_without_names(submission, package) for package in packages))
+    yield from as_rewriting(
         _LATER, (_with_later_spawners(submission, package) for package in packages)
     )
-    yield from as_family(
+    yield from as_rewriting(
         _RENAMED, (_with_renamed_files(submission, package, named) for package in packages)
     )
-    yield from as_family(_SYSTEM_RENAMED, (_with_renamed_system(submission, named, robot_files),))
+    yield from as_rewriting(
+        _SYSTEM_RENAMED, (_with_renamed_system(submission, named, robot_files),)
+    )
 
 
-def as_family(family: str, changes: Iterator[Files] | tuple[Files]) -> Iterator[tuple[str, Files]]:
-    """Yield a family with all its changes, if there are some."""
+def as_rewriting(
+    rewriting: str, changes: Iterator[Files] | tuple[Files]
+) -> Iterator[tuple[str, Files]]:
+    """Yield a rewriting with all its changes, if there are some."""
     files: dict[str, str | None] = {}
     for change in changes:
         files.update(change)
     if files:
-        yield family, files
+        yield rewriting, files
 
 
 def read_text(submission: Submission, path: str) -> str:
