@@ -167,7 +167,7 @@ class Interpreter(Evaluation):
         self.local_modules = local_modules
 
     def run(self, code: Code) -> py.Scope:
-        """Evaluate a whole file and return the scope of its names. Never raises."""
+        """Evaluate a whole file and return the scope of its names. It never raises."""
         self.releases = code.releases
         try:
             self._block(code.tree.body, self.module)
@@ -178,7 +178,7 @@ class Interpreter(Evaluation):
     def call_from_outside(
         self, function: py.Function, at: Position, args: Sequence[py.Value] | None = ()
     ) -> py.Value:
-        """Return the value of a call of one of the file's functions. Never raises.
+        """Return the value of a call of one of the file's functions. It never raises.
 
         With `args` None, the arguments are unknown, and no error or doubt in the call counts: it
         may never happen.
@@ -308,7 +308,7 @@ class Interpreter(Evaluation):
     def _skip_branches(self, branches: Sequence[ast.stmt], scope: py.Scope) -> bool:
         """Make unknown what branches bind of which one runs; return False if they do more.
 
-        Also if they read a name that is not bound: one of them may fail.
+        It also returns False if they read a name that is not bound: one of them may fail.
         """
         names = _names_bound(branches)
         if names is None or not self._has_names(branches, scope):
