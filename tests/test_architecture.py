@@ -279,6 +279,60 @@ def names_of_api(api: str) -> Iterator[tuple[str, str]]:
             yield from ((str(node.module), alias.name) for alias in node.names)
 
 
+# Types that packages share, and whose names say what they are: of URDF, of ROS 2, and of a graph.
+PLAIN = frozenset(
+    {
+        *("Box", "Capsule", "Cylinder", "Mesh", "Origin", "Sphere", "Visual", "UnknownShape"),
+        *("Qos", "StatedReleases", "MeshLoader", "LogAnswer", "NamePlaces", "WrittenName"),
+        *("GraphNode", "GraphEnd", "GraphTransform", "Connection", "EndedProcess", "GivenValue"),
+    }
+)
+
+
+def test_words_of_the_architecture_are_those_of_the_code() -> None:
+    """Each word of the page's table is the name of a type, a function or a module."""
+    known = {name.rpartition(".")[2] for name in MODULES}
+    for tree in prose().trees.values():
+        for node in tree.body:
+            match node:
+                case ast.ClassDef(name=name) | ast.FunctionDef(name=name):
+                    known.add(name)
+                case ast.Assign(targets=[ast.Name(id=name)]) if not name.isupper():
+                    known.add(name)  # a type that has another name
+    words = explained_words()
+    assert len(words) > 30
+    assert [word for word in words if word not in known] == []
+    assert [word for word, count in Counter(words).items() if count > 1] == []
+
+
+def test_types_that_packages_share_are_explained() -> None:
+    """Each class of an API is in the table of words, on the page of the Python API, or its name says what it is."""
+    api = (ROOT.parent / "docs/python.md").read_text(encoding="utf-8")
+    shared = set(shared_classes())
+    code = " ".join(re.findall(r"```.*?```|`[^`]+`", api, re.DOTALL))
+    explained = {*explained_words(), *re.findall(r"\w+", code)}
+    assert len(shared) > 40
+    assert shared - explained - PLAIN == set()
+    assert PLAIN - (shared - explained) == set()
+
+
+def explained_words() -> list[str]:
+    """Return the words in the first column of the table of words in docs/architecture.md."""
+    page = (ROOT.parent / "docs/architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (`.*?) \|", page.partition("\n## Words\n")[2], re.MULTILINE)
+    return re.findall(r"`(\w+)`", " ".join(rows))
+
+
+def shared_classes() -> Iterator[str]:
+    """Yield the classes that the APIs of packages and the module for plug-ins export."""
+    for module in (*APIS, "grader.plugin"):
+        for node in ast.walk(prose().trees[module]):
+            if isinstance(node, ast.ImportFrom) and node.module in prose().trees:
+                body = prose().trees[node.module].body
+                classes = {it.name for it in body if isinstance(it, ast.ClassDef)}
+                yield from (alias.name for alias in node.names if alias.name in classes)
+
+
 @pytest.mark.slow
 def test_ros_and_the_workspace_know_no_lab_and_no_submission() -> None:
     """No name in them speaks of these, and no docstring or comment."""
@@ -331,11 +385,11 @@ def test_only_rules_say_that_something_does_not_agree() -> None:
     assert places == []
 
 
-def test_check_families_do_not_import_each_other() -> None:
-    """Only the registry imports families of checks."""
-    families = {check.function.__module__ for check in own_checks()}
-    for family in families:
-        assert not set(imports(family)) & (families - {family}), family
+def test_modules_of_checks_do_not_import_each_other() -> None:
+    """Only the registry imports modules of checks."""
+    modules = {check.function.__module__ for check in own_checks()}
+    for module in modules:
+        assert not set(imports(module)) & (modules - {module}), module
 
 
 def test_every_package_has_a_layer() -> None:

@@ -184,8 +184,8 @@ def test_a_new_check(project: Path) -> None:
         ("grader/lab/checks/appearance.py", CHECK),
         ("docs/examples/checks.toml", EXAMPLE),
     ):
-        with (project / file).open("a", encoding="utf-8") as family:
-            family.write(text)
+        with (project / file).open("a", encoding="utf-8") as opened:
+            opened.write(text)
     replace(
         project / "grader/lab/checks/registry.py",
         "CHECKS = (\n",

@@ -132,8 +132,8 @@ def test_only_manual_checks_are_always_pending() -> None:
 
 
 def test_every_check_is_registered() -> None:
-    """Every function of a family's module that takes a subject and returns an outcome is in the list."""
-    written = {name for path in families() for name in checks_in(path)}
+    """Every function of a module of checks that takes a subject and returns an outcome is in the list."""
+    written = {name for path in check_modules() for name in checks_in(path)}
     assert written == set(NAMES)
 
 
@@ -214,7 +214,7 @@ def test_a_rubric_can_name_a_plugin_check(installed: list[str], tmp_path: Path) 
         load_rubric(str(path))
 
 
-def families() -> list[Path]:
+def check_modules() -> list[Path]:
     """Return the modules that contain checks."""
     return sorted({Path(inspect.getfile(check.function)) for check in own_checks()})
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from grader.app.hints_and_fix import add_hints
-from grader.lab.grading.grade import grade as grade_submission
+from grader.lab.grading.grade import grade as grade_opened
 from grader.lab.grading.report import Report
 from grader.lab.rubric.rubric import Rubric, load_rubric
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
@@ -38,5 +38,5 @@ def grade(
     loaded = rubric if isinstance(rubric, Rubric) else load_rubric(rubric)
     chosen = tuple(loaded.part(name).id for name in ((parts,) if isinstance(parts, str) else parts))
     submission = open_submission(os.fsdecode(path), loaded.lab, with_neighbours=True)
-    report = grade_submission(loaded, submission, chosen)
+    report = grade_opened(loaded, submission, chosen)
     return add_hints(report, submission, None, lambda _: None, is_fixed=False)[0]

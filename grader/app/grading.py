@@ -1,6 +1,6 @@
 """A submission that is graded as the options of `grader grade` say.
 
-Once, or with --watch again and again.
+It is graded once, or with --watch again and again.
 """
 
 import os
@@ -113,8 +113,8 @@ def _warn_of_faults(report: "Report", warn: Warn) -> None:
             warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
 
 
-def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
-    """Grade a submission. Raises GraderError."""
+def grade_request(request: GradeRequest, warn: Warn) -> GradeRun:
+    """Grade a submission as a request says. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
     for kind in (request.output_format, *(kind for kind, _ in request.saves)):
         list_inputs(kind)  # as well

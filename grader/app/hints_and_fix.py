@@ -24,7 +24,7 @@ def add_hints(
 ) -> tuple[Report, FixedFiles]:
     """Return a report with hints up to the wanted level, and the edits of all of them.
 
-    The edits if they are to be written.
+    The edits are returned if they are to be written.
 
     The level cannot exceed the rubric's. At the levels `none` and `place`, pictures of the report
     do not show the reference. Raises InputError if edits are to be written at a level that does not

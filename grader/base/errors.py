@@ -116,7 +116,7 @@ class NotDecided(LookupError):
 class MissingElement(LookupError):
     """Something that a check needs does not exist.
 
-    For example a link, a shape, a chain of joints, a defined pose.
+    This is, for example, a link, a shape, a chain of joints, or a defined pose.
 
     `kind` and `name` are equal for checks that fail for the same reason; the kinds `URDF` and
     `package` are those of work that a submission lacks, where evidence may take its place. `known`

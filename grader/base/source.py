@@ -147,7 +147,7 @@ class Source:
     def element(self, tag: int) -> "tuple[Source, int]":
         """Return the text that the element with this index was written in.
 
-        Also returns the offset of its start tag.
+        Also return the offset of its start tag.
         """
         return self, self._tags[tag]
 

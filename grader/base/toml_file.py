@@ -141,7 +141,7 @@ def _also(lines: Sequence[int]) -> str:
 def _syntax_mistake(error: str, text: str) -> str:
     """Return the place of the mistake that a message of tomli is about.
 
-    Also returns what it means, and the line.
+    Also return what it means, and the line.
     """
     text = text.replace("\r\n", "\n")
     lines = text.split("\n")

@@ -212,7 +212,7 @@ def turn_between(one: Rotation, other: Rotation) -> float:
 def unit(vector: Vector) -> Vector | None:
     """Return the unit vector of a direction, or None for length zero.
 
-    Safe from overflow and underflow.
+    It is safe from overflow and underflow.
     """
     if vector in AXES:  # the most frequent case
         return vector

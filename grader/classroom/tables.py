@@ -73,7 +73,7 @@ class TableRow(NamedTuple):
     def value(self, column: int | None) -> str:
         """Return the stripped value in a column.
 
-        Empty if the row is shorter or the column is None.
+        It is empty if the row is shorter or the column is None.
         """
         if column is not None and column < len(self.cells):
             return _unquoted(self.cells[column]).strip()

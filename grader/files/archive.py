@@ -1,7 +1,7 @@
 """A zip or tar as a file tree, read where it is: nothing is unpacked to a place with a name.
 
-Bounded in members, size, ratio and nesting. A name that leads out, a device or a link is ignored
-and named.
+It is bounded in members, size, ratio and nesting. A name that leads out, a device or a link is
+ignored and named.
 """
 
 import bz2

@@ -32,9 +32,9 @@ def read_folder(folder: Path, top: str = "") -> Tree:
     Below `top`, a folder around it, no symlink on its path is followed; by default the folder
     itself is trusted.
 
-    Ignored and named: symlinks, folders that cannot be opened, and anything that is neither file
-    nor folder. Silently
-    ignored: folders of builds and tools, virtual environments, hidden files.
+    Symlinks, folders that cannot be opened, and anything that is neither file nor folder are
+    ignored and named. Folders of builds and tools, virtual environments and hidden files are
+    ignored silently.
     """
     walk = _Walk(folder, top)
     walk.run()

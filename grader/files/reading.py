@@ -132,7 +132,7 @@ def _open_below(top: str, path: str) -> int:
 def _open_and_verify(top: str, path: str) -> int:
     """Open a file if the system cannot open it folder by folder (Windows).
 
-    Verifies that no symlink led to it.
+    It verifies that no symlink led to it.
     """
     handle = os.open(path, _FLAGS)
     real, plain, inside = map(

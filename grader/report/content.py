@@ -304,7 +304,7 @@ def failures(report: Report) -> tuple[Entry, ...]:
 def _shared_edit(failure: Entry) -> str:
     """Return what failures have in common that one edit fixes.
 
-    Or else what is said of them. A mark stands alone.
+    Without a hint, it is what is said of them. A mark stands alone.
     """
     result, outcome = failure.result, failure.result.outcome
     if result.why_given or result.manual_mark is not None:
@@ -342,7 +342,7 @@ def _join_equal(entries: Iterable[Entry]) -> Iterator[Entry]:
 def _reason_to_join(entry: Entry) -> str:
     """Return why a criterion could not be graded.
 
-    Of others, and of those with an answer or a comment, the id.
+    Of others, and of those with an answer or a comment, return the id.
     """
     outcome, has_own = (
         entry.result.outcome,
@@ -417,7 +417,7 @@ def _lost_by(entries: Iterable[Entry]) -> str:
 def score_text(report: Report) -> str:
     """Return the points that count and the maximum: 58.5 / 70 points.
 
-    Or that the student is excused.
+    Of an excused student, return that.
     """
     points = counting_text(report)
     if report.counting is not None:
@@ -428,7 +428,7 @@ def score_text(report: Report) -> str:
 def counting_text(report: Report) -> str:
     """Return the points that count for the student.
 
-    For example 58.5, excused, or a dash if nothing is decided.
+    For example, this is 58.5, excused, or a dash if nothing is decided.
     """
     if report.grade is None:
         return sum_text(report.results)
@@ -440,7 +440,7 @@ def counting_text(report: Report) -> str:
 def grade_line(report: Report) -> str:
     """Return how the grade of a student in a class came about.
 
-    Empty if it is the score of automatic criteria.
+    It is empty if it is the score of automatic criteria.
     """
     if report.grade is None:
         return ""
@@ -609,7 +609,7 @@ def other_problems(report: Report) -> list[Problem]:
 def next_command(report: Report, sections: ReportSections) -> str:
     """Return the command that explains the costliest failure, or else what is undecided.
 
-    Empty without either.
+    It is empty without either.
     """
     if report.student and not report.rubric.is_copy_of_shipped:  # which the student does not have
         return ""

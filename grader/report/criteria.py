@@ -1,6 +1,6 @@
 """Criteria in a report, alone and in groups.
 
-Their status and points, and what is said about each, block by block.
+Here are their status and points, and what is said about each, block by block.
 
 A writer decides how a block looks in its medium and which roles it leaves out, but neither words
 nor order.
@@ -126,7 +126,7 @@ def is_manual(result: Result) -> bool:
 def sum_text(results: tuple[Result, ...]) -> str:
     """Return the points of some criteria together.
 
-    For example 58.5, or a dash if all of them need manual grading.
+    For example, this is 58.5, or a dash if all of them need manual grading.
     """
     is_open = bool(results) and all(result.is_open for result in results)
     if is_open:
@@ -137,7 +137,7 @@ def sum_text(results: tuple[Result, ...]) -> str:
 def earned_text(*results: Result) -> str:
     """Return the points and the maximum of criteria together: 8/14, above it with extra credit.
 
-    –/14; 5/5 bonus.
+    Other examples are –/14, and 5/5 bonus.
     """
     most = worth(result.criterion for result in results)
     maximum = format_points(most.points) if most.points or not most.bonus else most.short
@@ -147,7 +147,7 @@ def earned_text(*results: Result) -> str:
 def write_points(results: Iterable[Result]) -> str:
     """Return the maximum of some criteria together.
 
-    For example 14 points, 14 points and 5 bonus points, 5 bonus points.
+    Examples are 14 points, 14 points and 5 bonus points, or 5 bonus points.
     """
     return worth(result.criterion for result in results).text
 
@@ -200,7 +200,7 @@ class Entry(NamedTuple):
     def results(self) -> tuple[Result, ...]:
         """All criteria of the mistake.
 
-        This one, those that its edit fixes, and those that are skipped because of it.
+        They are this one, those that its edit fixes, and those that are skipped because of it.
         """
         own_results = (self.result, *self.skipped)
         return (*own_results, *(result for other in self.also for result in other.results))
@@ -214,7 +214,7 @@ class Entry(NamedTuple):
     def cost(self) -> str:
         """The points that the mistake costs in all, as in `-8 points`.
 
-        Of extra credit what was earned.
+        Of extra credit, it is what was earned.
         """
         if self.result.criterion.bonus and not self.lost:
             return f"{earned_text(self.result)} points"
@@ -401,7 +401,7 @@ def remarks_on(result: Result) -> list[str]:
 def _answers(result: Result) -> Iterator[Answer]:
     """Yield the student's answer to a question, and the model answer.
 
-    The latter if the rubric was loaded with its answers.
+    The latter is there if the rubric was loaded with its answers.
     """
     lines = tuple(printable(line) for line in answer_lines(result.outcome) if line.strip())
     model = tuple(printable(line) for line in model_lines(result.criterion) if line.strip())
@@ -426,7 +426,7 @@ def answer_lines(outcome: Outcome) -> list[str]:
 def model_lines(criterion: Criterion) -> list[str]:
     """Return the lines of the model answer.
 
-    None if the criterion has no answer or is loaded without.
+    It is None if the criterion has no answer or is loaded without.
     """
     return criterion.answer.strip("\n").splitlines()
 
@@ -442,7 +442,7 @@ def counts_lines(location: Location) -> bool:
 def hint_text(entry: Entry, hint: Hint) -> str:
     """Return the message of the hint of a failure.
 
-    And which criteria have to be looked at after that edit.
+    It also says which criteria have to be looked at after that edit.
     """
     if entry.first and not hint.fixed_with:
         return f"Fixed by the same edit as {entry.first}."
@@ -476,7 +476,7 @@ def plain_lines(entry: Entry, source_of: SourceOf) -> list[str]:
 def pending_reason(result: Result) -> str:
     """Return where the answer or the pictures are that need manual grading.
 
-    Or why a check cannot decide.
+    For a check that cannot decide, return why.
     """
     outcome = result.outcome
     if not is_manual(result):

@@ -27,27 +27,27 @@ class _ExampleBlock(NamedTuple):
 def explain_kind(kind: Kind) -> str:
     """Return what ROS 2 does about a problem and how to fix the file, in one line.
 
-    The title if that is unknown.
+    It is the title if that is unknown.
     """
-    entry = _family(_read_family(kind.code)).get(kind.code, {})
+    entry = _read_examples(_name_file(kind.code)).get(kind.code, {})
     return " ".join(entry.get("explanation", kind.title).split())
 
 
 def example_blocks(name: str) -> Iterator[_ExampleBlock]:
     """Yield a check's row in a rubric, and the example of a check, a rule or a code.
 
-    Only if it is known; that of a code may be that of one of its rules.
+    The example is there only if it is known; that of a code may be that of one of its rules.
     """
     if name in RULES:
         yield from make_blocks(RULES[name]._asdict())
         return
-    family = _read_family(name)
-    entries = _family(family)
+    file = _name_file(name)
+    entries = _read_examples(file)
     example = entries.get(name, {})
     if "example" in example:
         yield from example_blocks(example["example"])
     if "wrong" in example:
-        if family == _CHECKS:
+        if file == _CHECKS:
             given = f"\nwith = {toml_literal(example['with'])}" if "with" in example else ""
             yield _ExampleBlock("In a rubric", "rubric.toml", f'check = "{name}"{given}')
         yield from make_blocks({"frame": next(iter(entries["frames"])), **example})
@@ -68,14 +68,14 @@ def _name_frame(frame: str) -> str:
     return frame.rpartition("/")[2]
 
 
-def _read_family(name: str) -> str:
+def _name_file(name: str) -> str:
     if name.isupper():
         return name.rstrip(digits).lower()
     return _CHECKS
 
 
 @cache
-def _family(name: str) -> Mapping[str, Any]:
+def _read_examples(name: str) -> Mapping[str, Any]:
     path = shipped_folder("docs", "examples") / f"{name}.toml"  # not in a bundle for a platform
     if path.is_file():
         return read_toml(path.read_bytes(), path)[1]

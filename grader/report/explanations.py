@@ -1,6 +1,6 @@
 """Rubrics, checks and problem codes in plain text.
 
-With what docs/examples/ has for a code or a check.
+They come with what docs/examples/ has for a code or a check.
 """
 
 import textwrap

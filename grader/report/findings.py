@@ -71,7 +71,7 @@ def finding_of_problem(problem: Problem) -> Finding:
 def place_in_repository(finding: Finding, base: Base) -> tuple[str, Location | None]:
     """Return the file of a finding from the root of the repository, and where to look.
 
-    Of one in an archive the archive, and None.
+    Of a file in an archive, return the archive, and None.
     """
     path = finding.location.path
     archive = base.archive or archive_around(path)

@@ -80,7 +80,7 @@ class InspectedRobot:
     def poses(self) -> Iterator[tuple[str, Transform | str]]:
         """Yield the pose of every link in the frame `relative_to`, in file order.
 
-        Or the reason why it has none.
+        If a link has none, yield the reason.
         """
         robot = self.configuration
         if robot is None or self.relative_to is None:

@@ -39,7 +39,7 @@ def list_to_json(objects: Sequence[Mapping[str, Any]]) -> str:
 def _harmless(text: str) -> str:
     """Return JSON with escapes for unprintable characters.
 
-    And for what a CI system takes for a command.
+    What a CI system takes for a command is escaped, too.
     """
     if not text.isascii() or "\x7f" in text:
         text = _UNPRINTABLE.sub(
@@ -96,7 +96,7 @@ def exact(points: Decimal | None) -> int | float | None:
 def rounded(value: Any) -> Any:
     """Return plain data: points exact, floats to 1e-6, because machines differ beyond.
 
-    No -0, NaN or infinity.
+    There is no -0, NaN or infinity in it.
     """
     if value is None or isinstance(value, str | int):
         return value

@@ -1,6 +1,6 @@
 """Locations in a submission.
 
-In words, with their source line or an edit of it, and their path in the repository.
+They are in words, with their source line or an edit of it, and with their path in the repository.
 """
 
 import re
@@ -59,7 +59,7 @@ def excerpt(
 def calls_text(where: Location) -> str:
     """Return the macro calls of xacro that led to a location, innermost first.
 
-    Empty if there are none.
+    It is empty if there are none.
     """
     calls = [
         f"in macro {printable(macro)}, called at {printable(at.path)}:{at.line}"
@@ -77,7 +77,7 @@ def message_at(message: str, where: Location) -> str:
 def location_text(where: Location) -> str:
     """Return a location as editors take it, path:line:column.
 
-    And the macro calls that led to it.
+    The macro calls that led to it follow.
     """
     return f"{printable(where.path)}:{where.line}:{where.column}{calls_text(where)}"
 
@@ -85,7 +85,7 @@ def location_text(where: Location) -> str:
 def excerpt_lines(where: Location, source_of: SourceOf) -> Iterator[str]:
     """Yield the source line of a location, and a line that underlines the marked part.
 
-    Nothing without the file.
+    It yields nothing without the file.
     """
     source = source_of(where.path)
     if source is not None:
@@ -154,7 +154,7 @@ def _changed_lines(edits: Iterable[Edit], source: Source | None) -> Iterator[str
 def _texts_around(edits: list[Edit], source: Source | None) -> tuple[str, str]:
     """Return the whole lines of edits that begin in one line, before and after.
 
-    Of long lines only what changes.
+    Of long lines, return only what changes.
     """
     height = 1 + max(edit.old.count("\n") for edit in edits)
     start = edits[0].line

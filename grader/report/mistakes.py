@@ -99,7 +99,7 @@ def _criterion_rule(criterion: Criterion) -> FindingKind:
 def _main_file(result: Result, report: Report) -> str:
     """Return the file to look at if a criterion has no place: the package's or the URDF.
 
-    Empty without both.
+    It is empty without both.
     """
     package = report.submission.package
     if package is not None and result.criterion.check.subject not in ("urdf", "robot"):

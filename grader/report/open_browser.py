@@ -44,7 +44,7 @@ def opened_in_browser(address: str, file: Path) -> Iterator[bool]:
 def _has_window() -> bool:
     """Return whether the browser is not one of the terminal.
 
-    Such as w3m, which would take the terminal away.
+    One of the terminal, such as w3m, would take the terminal away.
     """
     try:
         browser = webbrowser.get()

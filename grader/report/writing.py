@@ -257,7 +257,7 @@ def _symlinks(path: Path) -> Iterator[Path]:
 def refuse_inputs(option: str, path: Path, inputs: Iterable[Path]) -> None:
     """Raise InputError if a file that an option names is one of the inputs.
 
-    Or if it exists in one that is a folder.
+    Also raise it if the file exists in an input that is a folder.
     """
     real = Path(os.path.realpath(path))
     for input_path in inputs:

@@ -162,7 +162,7 @@ async def _connect_once(address: str) -> None:
 def _version_and_access(roots: Sequence[str]) -> tuple[str, str]:
     """Return, on a worker, the version of its grader.
 
-    Also returns the first path of the class that the worker does not see.
+    Also return the first path of the class that the worker does not see.
     """
     return __version__, next((root for root in roots if not Path(root).exists()), "")
 

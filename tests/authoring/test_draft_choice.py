@@ -5,13 +5,13 @@ from typing import Any
 import pytest
 
 from grader.lab.authoring.draft_choice import DraftChoice
-from grader.lab.authoring.facts import Fact
+from grader.lab.authoring.expectations import Expectation
 
 _LOOKUP = {"target": "odom", "source": "base"}
 
 
-def _fact(check: str, arguments: dict[str, Any]) -> Fact:
-    return Fact("The package", check, arguments, check, package="")
+def _expectation(check: str, arguments: dict[str, Any]) -> Expectation:
+    return Expectation("The package", check, arguments, check, package="")
 
 
 @pytest.mark.parametrize(
@@ -28,12 +28,12 @@ def test_names_that_are_free(
     check: str, arguments: dict[str, Any], free: set[str], left: Any
 ) -> None:
     """A criterion about nothing else is omitted."""
-    fact = DraftChoice(free=frozenset(free)).freed(_fact(check, arguments), None)
+    expectation = DraftChoice(free=frozenset(free)).freed(_expectation(check, arguments), None)
     if left is None:
-        assert fact is None
+        assert expectation is None
     else:
-        assert isinstance(fact, Fact)
-        assert fact.arguments.get("spawns", fact.arguments) == left
+        assert isinstance(expectation, Expectation)
+        assert expectation.arguments.get("spawns", expectation.arguments) == left
 
 
 @pytest.mark.parametrize(
@@ -41,5 +41,5 @@ def test_names_that_are_free(
 )
 def test_kinds_that_are_omitted(check: str, word: str) -> None:
     """One word stands for the checks of a kind."""
-    assert not DraftChoice(without=frozenset({word})).takes(_fact(check, {}))
-    assert DraftChoice(without=frozenset({"masses"})).takes(_fact(check, {}))
+    assert not DraftChoice(without=frozenset({word})).takes(_expectation(check, {}))
+    assert DraftChoice(without=frozenset({"masses"})).takes(_expectation(check, {}))

@@ -1,4 +1,4 @@
-"""Equivalents of a reference are the same robot, and a criterion is never asked about a family under which its check breaks."""
+"""Equivalents of a reference are the same robot, and a criterion is never asked about a rewriting under which its check breaks."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -77,16 +77,16 @@ def _numbers(matrix: tuple[tuple[float, ...], ...]) -> tuple[float, ...]:
 
 
 def test_every_equivalent_is_the_same_robot() -> None:
-    """In all families, shapes and masses are where they were, also when the joints move."""
+    """In all rewritings, shapes and masses are where they were, also when the joints move."""
     expected = dict(seen(read_arm()))
     found = made()
-    assert [equivalent.family for equivalent in found] == [*EQUIVALENTS]
+    assert [equivalent.rewriting for equivalent in found] == [*EQUIVALENTS]
     for equivalent in found:
         robot = read(equivalent)
-        assert dict(seen(robot)).keys() == expected.keys(), equivalent.family
+        assert dict(seen(robot)).keys() == expected.keys(), equivalent.rewriting
         for name, numbers in seen(robot):
             assert numbers == pytest.approx(expected[name], abs=1e-9), (
-                f"{equivalent.family}: {name}"
+                f"{equivalent.rewriting}: {name}"
             )
         assert sorted(map(str, limits(robot))) == sorted(map(str, limits(read_arm())))
 
@@ -104,10 +104,13 @@ def limits(robot: Robot) -> list[object]:
     return [(joint.type, joint.limit) for joint in robot.joints if joint.type != "fixed"]
 
 
-def test_each_family_changes_what_it_says() -> None:
+def test_each_rewriting_changes_what_it_says() -> None:
     """Each differs from the reference in the thing that gives it its name."""
-    first = {equivalent.family: equivalent for equivalent in made()}
-    arm, robots = read_arm(), {family: read(equivalent) for family, equivalent in first.items()}
+    first = {equivalent.rewriting: equivalent for equivalent in made()}
+    arm, robots = (
+        read_arm(),
+        {rewriting: read(equivalent) for rewriting, equivalent in first.items()},
+    )
     assert [link.name for link in robots["order of elements"].links] != [
         link.name for link in arm.links
     ]
@@ -149,7 +152,7 @@ def test_names_that_something_refers_to_stay(tmp_path: Path) -> None:
 def test_frames_of_links_that_are_named_by_their_place_stay() -> None:
     """@root, @tip and @moved:1 are the ends of the tree and the links that move."""
     moved = next(
-        equivalent for equivalent in made(placed=True) if equivalent.family == "frames moved"
+        equivalent for equivalent in made(placed=True) if equivalent.rewriting == "frames moved"
     )
     robot, arm = Configuration(read(moved)), Configuration(read_arm())
     inner = {joint.parent for joint in arm.robot.joints}
@@ -161,7 +164,7 @@ def test_frames_of_links_that_are_named_by_their_place_stay() -> None:
 
 
 @pytest.mark.parametrize(
-    ("check", "arguments", "families"),
+    ("check", "arguments", "rewritings"),
     [
         ("frame_at", {"link": "tool"}, ()),
         ("counts", {"moving": 3}, ()),
@@ -183,13 +186,13 @@ def test_frames_of_links_that_are_named_by_their_place_stay() -> None:
         ("xacro_uses", {"macros": 1}, EQUIVALENTS),
     ],
 )
-def test_a_check_breaks_under_families(
-    check: str, arguments: dict[str, object], families: tuple[str, ...]
+def test_a_check_breaks_under_rewritings(
+    check: str, arguments: dict[str, object], rewritings: tuple[str, ...]
 ) -> None:
     """By its arguments: a count of links breaks where there are more links, and one of moving joints does not."""
     found = find_check(check)
     assert found is not None
-    assert found.about.breaks_under(arguments) == families
+    assert found.about.breaks_under(arguments) == rewritings
 
 
 SHARED = """<robot name="r">

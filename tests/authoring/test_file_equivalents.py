@@ -51,7 +51,7 @@ def test_nodes_get_the_same_parameters_from_equivalents() -> None:
 
 
 @pytest.mark.parametrize(
-    ("detector", "families"),
+    ("detector", "rewritings"),
     [
         ("'detector':\n  ros__parameters: {threshold: 0.5, names: ['a, b', c]}\n", {"/**", "flow"}),
         ("/**:\n  ros__parameters:\n    threshold: 0.5\n", {"flow"}),
@@ -70,14 +70,14 @@ def test_nodes_get_the_same_parameters_from_equivalents() -> None:
     ],
 )
 def test_a_file_that_would_mean_something_else_has_no_equivalent(
-    detector: str, families: set[str]
+    detector: str, rewritings: set[str]
 ) -> None:
     """What an equivalent changes is the text only: the parameters in it are those of the file."""
     found = {
-        family: texts[DETECTOR]
-        for family, texts in file_equivalents(workspace_with(detector))
+        rewriting: texts[DETECTOR]
+        for rewriting, texts in file_equivalents(workspace_with(detector))
         if DETECTOR in texts
     }
-    assert {"/**" if "/**" in family else "flow" for family in found} == families
+    assert {"/**" if "/**" in rewriting else "flow" for rewriting in found} == rewritings
     for text in found.values():
         assert [*yaml_value(text).values()] == [*yaml_value(detector).values()]

@@ -9,27 +9,27 @@ pytestmark = pytest.mark.slow
 
 
 def many(**counts: int) -> list[Mutant]:
-    """Return mutants of families, so many of each."""
+    """Return so many mutants of each mutation."""
     made = []
-    for family, count in counts.items():
-        name = family.replace("_", " ")
+    for mutation, count in counts.items():
+        name = mutation.replace("_", " ")
         made += [Mutant(f"{name}: {number}", name, "a.urdf", number) for number in range(count)]
     return made
 
 
-def test_a_sample_has_mutants_of_all_families() -> None:
-    """A rare family has as many as a common one, in the order of all mutants; another seed draws others."""
+def test_a_sample_has_mutants_of_all_mutations() -> None:
+    """A rare mutation has as many as a common one, in the order of all mutants; another seed draws others."""
     mutants = many(number_zero=500, name_misspelt=300, spin_removed=3)
     drawn = draw(mutants, 63, 0)
     assert len(drawn) == 63
-    assert [it.family for it in drawn].count("spin removed") == 3
-    assert [it.family for it in drawn].count("number zero") == 30
+    assert [it.mutation for it in drawn].count("spin removed") == 3
+    assert [it.mutation for it in drawn].count("number zero") == 30
     assert drawn == sorted(drawn, key=mutants.index)
     assert (draw(mutants, 63, 0) == drawn, draw(mutants, 63, 1) == drawn) == (True, False)
     assert draw(mutants, 803, 0) == mutants
 
 
-def test_every_family_has_a_kind() -> None:
+def test_every_mutation_has_a_kind() -> None:
     """By how its name begins."""
     assert find_kind("world element deleted") == "worlds"
     assert find_kind("bridge row removed") == "bridges"

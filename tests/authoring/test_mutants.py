@@ -1,4 +1,4 @@
-"""Mutants of a text: the families, their ids, their places."""
+"""Mutants of a text: the mutations, their ids, their places."""
 
 import pytest
 
@@ -12,7 +12,7 @@ FOUND = {mutant.id: mutant for mutant in mutants(ARM, "birch.urdf")}
 
 @pytest.mark.parametrize("change", CHANGES["robot"], ids=lambda change: change["id"])
 def test_a_mutant_makes_one_change(change: dict[str, str]) -> None:
-    """The family and the place by names say what the mutant changes."""
+    """The mutation and the place by names say what the mutant changes."""
     assert FOUND[change["id"]].applied(ARM) == ARM.replace(change["old"], change["new"], 1)
 
 
@@ -21,7 +21,7 @@ def test_a_link_that_must_show_nothing_gets_a_visual() -> None:
     box = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
     text = '<robot><link name="a"/><link name="b"></link><link name="c"/></robot>'
     found = [
-        it for it in mutants(text, "a.urdf", ["a", "b", "nowhere"]) if it.family == "visual added"
+        it for it in mutants(text, "a.urdf", ["a", "b", "nowhere"]) if it.mutation == "visual added"
     ]
     assert [mutant.id for mutant in found] == ["visual added: link a", "visual added: link b"]
     assert [mutant.applied(text) for mutant in found] == [
@@ -45,7 +45,7 @@ def test_equal_siblings_are_counted() -> None:
     """The second visual of a link has a place of its own."""
     found = mutants("<robot><link name='a'><visual/><visual/></link><link/><link/></robot>")
     labels = [
-        mutant.id.partition(": ")[2] for mutant in found if mutant.family == "element deleted"
+        mutant.id.partition(": ")[2] for mutant in found if mutant.mutation == "element deleted"
     ]
     assert labels == ["link a", "link a/visual", "link a/visual 2", "link", "link 2"]
 

@@ -120,13 +120,13 @@ def write_pair(folder: Path, changes: dict[str, str]) -> Submission:
     return open_with_packages(str(folder))
 
 
-def families(submission: Submission, named: tuple[str, ...] = ()) -> dict[str, Submission]:
-    """Return the submission as each family of equivalents rewrites it."""
+def rewritings(submission: Submission, named: tuple[str, ...] = ()) -> dict[str, Submission]:
+    """Return the submission as each rewriting leaves it."""
     assert submission.reopen is not None
     rewritten = {}
-    for family, texts in node_equivalents(submission, named):
+    for rewriting, texts in node_equivalents(submission, named):
         files = {path: None if text is None else text.encode() for path, text in texts.items()}
-        rewritten[family] = submission.reopen(overlaid(submission.whole_tree, files))
+        rewritten[rewriting] = submission.reopen(overlaid(submission.whole_tree, files))
     return rewritten
 
 
@@ -144,14 +144,14 @@ def running(submission: Submission) -> set[tuple[object, ...]]:
 def test_nodes_are_started_in_other_ways(tmp_path: Path) -> None:
     """The same nodes run, by the same names, with the same parameters; nothing disagrees."""
     submission = write_pair(tmp_path, {})
-    rewritten = families(submission)
+    rewritten = rewritings(submission)
     assert rewritten.keys() == EVERY_FAMILY
-    for family, same in rewritten.items():
+    for rewriting, same in rewritten.items():
         assert not [row for row in read_agreement(same.workspace).mismatches if row.is_certain]
         # A table of the launch file is given to both nodes of a program.
         more = running(same) - running(submission)
-        assert running(submission) <= running(same), family
-        assert not more or family == "two nodes in one program"
+        assert running(submission) <= running(same), rewriting
+        assert not more or rewriting == "two nodes in one program"
 
 
 @pytest.mark.parametrize(
@@ -174,11 +174,11 @@ def test_what_is_not_all_known_is_not_rewritten(
     changes: dict[str, str], absent: set[str], tmp_path: Path
 ) -> None:
     """A value of run time, a text that launch reads as YAML, a class that needs an argument."""
-    rewritten = families(write_pair(tmp_path, changes))
+    rewritten = rewritings(write_pair(tmp_path, changes))
     assert rewritten.keys() <= EVERY_FAMILY - absent
 
 
 def test_a_program_that_a_rubric_names_stays(tmp_path: Path) -> None:
     """As it asks for the program, two nodes in another one are not the same."""
-    rewritten = families(write_pair(tmp_path, {}), ("pair/giver",))
+    rewritten = rewritings(write_pair(tmp_path, {}), ("pair/giver",))
     assert rewritten.keys() == EVERY_FAMILY - {"two nodes in one program"}

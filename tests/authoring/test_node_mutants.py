@@ -23,7 +23,7 @@ def test_interfaces_and_code_have_mutants() -> None:
     for path, text in laundry_files().items():
         for change in node_changes(submission, Source(path, text), path, ("interfaces", "code")):
             assert text[change.start : change.end] != change.new
-            found[change.family] += 1
+            found[change.mutation] += 1
     assert found == {
         "field renamed": 10,
         "separator removed": 3,
@@ -71,7 +71,7 @@ def test_nodes_in_python_have_mutants() -> None:
     """Each is what rclpy refuses for certain."""
     source = Source("lamp.py", PYTHON)
     changes = node_changes(cart(laundry_files()), source, "lamp.py", CODE)
-    found = {(it.family, PYTHON[it.start : it.end], it.new) for it in changes}
+    found = {(it.mutation, PYTHON[it.start : it.end], it.new) for it in changes}
     order = "self.lights = self.create_publisher(Bool, 'light', 10)"
     init = "super().__init__('lamp')"
     assert found >= {
@@ -82,7 +82,7 @@ def test_nodes_in_python_have_mutants() -> None:
         ("quality of service as text", "5", "'5'"),
         ("constructor after its use", f"{init}\n        {order}", f"{order}\n        {init}"),
     }
-    assert not any(family == "callback parameter removed" for family, _, _ in found)
+    assert not any(mutation == "callback parameter removed" for mutation, _, _ in found)
 
 
 def test_a_family_that_is_not_compared_has_no_mutants() -> None:
@@ -107,7 +107,7 @@ def test_nodes_in_cpp_have_mutants() -> None:
     """Without what initialises rclcpp, or what spins."""
     source = Source("src/beacon.cpp", CPP)
     found = [*node_changes(cart(laundry_files()), source, "beacon.cpp", CODE)]
-    assert [(it.family, CPP[it.start : it.end].strip()) for it in found] == [
+    assert [(it.mutation, CPP[it.start : it.end].strip()) for it in found] == [
         ("spin removed", "rclcpp::spin(node);"),
         ("init removed", "rclcpp::init(argc, argv);"),
     ]

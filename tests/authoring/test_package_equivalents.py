@@ -17,16 +17,16 @@ LAB6 = ROOT / "rubrics/lab6/my_robot"
 DIFFDRIVE = ROOT / "rubrics/diffdrive/diffdrive_robot"
 
 
-def families(submission: Submission, named: tuple[str, ...] = ()) -> dict[str, Submission]:
-    """Return the submission as each family of equivalents rewrites it."""
+def rewritings(submission: Submission, named: tuple[str, ...] = ()) -> dict[str, Submission]:
+    """Return the submission as each rewriting leaves it."""
     assert submission.reopen is not None
     robot_files = [
         path for path in submission.whole_tree.files if path.endswith((".xacro", ".urdf"))
     ]
     rewritten = {}
-    for family, texts in package_equivalents(submission, named, robot_files):
+    for rewriting, texts in package_equivalents(submission, named, robot_files):
         files = {path: None if text is None else text.encode() for path, text in texts.items()}
-        rewritten[family] = submission.reopen(overlaid(submission.whole_tree, files))
+        rewritten[rewriting] = submission.reopen(overlaid(submission.whole_tree, files))
     return rewritten
 
 
@@ -62,11 +62,11 @@ def wrong(submission: Submission) -> list[str]:
 def test_packages_of_robots_are_rewritten(reference: Path, expected: set[str]) -> None:
     """Nothing disagrees afterwards, and the same nodes start with the same parameters."""
     submission = open_with_packages(str(reference))
-    found = families(submission)
+    found = rewritings(submission)
     assert {*found} == expected
-    for family, same in found.items():
-        assert wrong(same) == [], family
-        assert started(same) == started(submission), family
+    for rewriting, same in found.items():
+        assert wrong(same) == [], rewriting
+        assert started(same) == started(submission), rewriting
 
 
 MANIFEST = """<package format="3"><name>talk</name><version>0.1.0</version><description>d</description>
@@ -129,12 +129,12 @@ def write_talk(folder: Path, **changes: str) -> Submission:
 def test_a_launch_file_is_rewritten_in_another_language(tmp_path: Path) -> None:
     """With all its nodes, parameters, remappings and arguments; setup.py installs it."""
     submission = write_talk(tmp_path)
-    found = families(submission)
+    found = rewritings(submission)
     languages = {"launch file in XML", "launch file in YAML"}
     assert languages <= {*found}
     rewritten = {language: found[language] for language in languages}
     for language in languages:  # and back
-        again = families(found[language])["launch file in Python"]
+        again = rewritings(found[language])["launch file in Python"]
         rewritten[f"{language}, in Python"] = again
     for same in rewritten.values():
         assert wrong(same) == []
@@ -168,7 +168,7 @@ def test_a_launch_file_is_rewritten_in_another_language(tmp_path: Path) -> None:
 )
 def test_what_is_not_all_known_stays_in_python(change: dict[str, str], tmp_path: Path) -> None:
     """A name or condition of run time, a text that launch reads as YAML, launch arguments."""
-    assert not [it for it in families(write_talk(tmp_path, **change)) if "launch file" in it]
+    assert not [it for it in rewritings(write_talk(tmp_path, **change)) if "launch file" in it]
 
 
 def test_what_a_rubric_names_keeps_its_name() -> None:
@@ -177,4 +177,4 @@ def test_what_a_rubric_names_keeps_its_name() -> None:
     text = (DIFFDRIVE / "urdf/diffdrive.ros2_control.xacro").read_text()
     name = text.partition('<ros2_control name="')[2].partition('"')[0]
     files = [path.rpartition("/")[2] for path in submission.whole_tree.files if "config/" in path]
-    assert {*families(submission, (name, *files))} == {"spawners after an event"}
+    assert {*rewritings(submission, (name, *files))} == {"spawners after an event"}

@@ -21,7 +21,7 @@ import pytest
 
 from grader.app.cli.streams import TERMINAL
 from grader.app.commands.repeating import changes, repeat_on_change
-from grader.app.grading import GradeRequest, GradeRun, grade_submission
+from grader.app.grading import GradeRequest, GradeRun, grade_request
 from grader.base.processor_time import CAN_LIMIT
 from grader.report.screen import Screen
 from grader.report.writing import Warn
@@ -361,9 +361,9 @@ def test_a_round_that_takes_too_long_is_reported(
         hangs = robot.read_bytes() == b"hangs"
         while hangs:
             pass
-        return grade_submission(request, warn)
+        return grade_request(request, warn)
 
-    monkeypatch.setattr("grader.app.commands.watch.grade_submission", grade_or_hang)
+    monkeypatch.setattr("grader.app.commands.watch.grade_request", grade_or_hang)
     done = watch([robot], partial(put, b"hangs", robot), partial(put, URDF, robot))
     assert done.err[1:] == ["grader: this takes more than 5 s of processor time\n", ""]
     assert (done.out[1], BETTER in done.out[2]) == ("", True)

@@ -1,6 +1,6 @@
 """Measure the hints: python -m tests.hints.measure [--count 100] [--seed 1] [--bad] [BASE...], or --samples, or --students.
 
-Every mutant of the correct robots that loses points is searched. For each family it prints how many have a verified hint
+Every mutant of the correct robots that loses points is searched. For each mutation it prints how many have a verified hint
 (`hint`), how many get full marks with all edits (`full`), how many are then the same robot (`same`) or the same text (`undo`), and how many
 have a hint that changes the line of the mistake (`there`).
 """
@@ -33,7 +33,7 @@ class Marks(NamedTuple):
 class Verdict(NamedTuple):
     """What the hints for one mutant achieve."""
 
-    family: str
+    mutation: str
     label: str
     hints: Hints
     is_undo: bool
@@ -58,7 +58,7 @@ class Verdict(NamedTuple):
     def told(self) -> str:
         """The hints in lines."""
         lines = [
-            f"{self.family} | {self.label} | lost {len(self.hints.lost)}: {' '.join(self.hints.lost[:4])}"
+            f"{self.mutation} | {self.label} | lost {len(self.hints.lost)}: {' '.join(self.hints.lost[:4])}"
         ]
         for found in self.hints.found:
             lines.append(f"     + {message(found, 'edit', self.hints.submission, ())}")
@@ -80,7 +80,9 @@ def verdicts(base: Base, count: int | None, random: Random) -> Iterator[Verdict]
             differs = differences(expected, behaviour(hints.fixed))
             is_undo = hints.is_full and text_after(base, hints) == base.text
             label, place = f"{base.name} {mutant.id}", (base.path, mutant.line)
-            yield Verdict(mutant.family, label, hints, is_undo, tuple(differs), milliseconds, place)
+            yield Verdict(
+                mutant.mutation, label, hints, is_undo, tuple(differs), milliseconds, place
+            )
 
 
 def of_samples() -> Iterator[Verdict]:
@@ -113,14 +115,14 @@ def of_students() -> Iterator[Verdict]:
 
 
 def table(found: Iterable[Verdict]) -> Iterator[str]:
-    """Yield the shares by family, the worst first, and of all."""
-    families: dict[str, list[Verdict]] = {}
+    """Yield the shares by mutation, the worst first, and of all."""
+    mutations: dict[str, list[Verdict]] = {}
     for verdict in found:
-        families.setdefault(verdict.family, []).append(verdict)
-        families.setdefault("all", []).append(verdict)
-    yield f"{'family':22}{'count':>7}{'hint':>8}{'full':>8}{'same':>8}{'undo':>8}{'there':>8}{'steps':>8}{'ms':>8}"
-    for family, those in sorted(
-        families.items(), key=lambda pair: mean(found.marks.is_full for found in pair[1])
+        mutations.setdefault(verdict.mutation, []).append(verdict)
+        mutations.setdefault("all", []).append(verdict)
+    yield f"{'mutation':22}{'count':>7}{'hint':>8}{'full':>8}{'same':>8}{'undo':>8}{'there':>8}{'steps':>8}{'ms':>8}"
+    for mutation, those in sorted(
+        mutations.items(), key=lambda pair: mean(found.marks.is_full for found in pair[1])
     ):
         shares = "".join(
             f"{100 * mean(found.marks[index] for found in those):8.1f}" for index in range(5)
@@ -129,7 +131,7 @@ def table(found: Iterable[Verdict]) -> Iterator[str]:
             mean(found.hints.steps for found in those),
             mean(found.milliseconds for found in those),
         )
-        yield f"{family:22}{len(those):7}{shares}{steps:8.0f}{time:8.1f}"
+        yield f"{mutation:22}{len(those):7}{shares}{steps:8.0f}{time:8.1f}"
 
 
 def main() -> None:

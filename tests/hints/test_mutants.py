@@ -22,7 +22,7 @@ def test_single_mistakes_get_hints_that_undo_them() -> None:
     assert len(found) >= 100
     assert sum(verdict.marks.has_hint for verdict in found) >= 0.95 * len(found)
     assert sum(verdict.marks.is_same for verdict in found) >= 0.90 * len(found)
-    values = [verdict for verdict in found if not verdict.family.startswith("element")]
+    values = [verdict for verdict in found if not verdict.mutation.startswith("element")]
     assert sum(verdict.marks.is_there for verdict in values) >= 0.90 * len(values)
 
 

@@ -443,3 +443,19 @@ def main():
     [node] = nodes_of(text).nodes
     kinds = [part.kind for end in node.endpoints for part in end.parts]
     assert kinds == ([name] if name else [])
+
+
+INCREASED = [
+    ("self.angle = 0.0\nself.angle_ += 1.0", ["Look has no attribute angle_; did you mean angle?"]),
+    ("self.angle = 0.0\nself.angle += 1.0", []),
+    ("self.angle: float = 0.0\nself.angle += 1.0", []),
+    ("setattr(self, 'angle', 0.0)\nself.angle += 1.0", []),
+]
+
+
+@pytest.mark.parametrize(("body", "messages"), INCREASED)
+def test_attributes_that_only_increase(body: str, messages: list[str]) -> None:
+    """+= makes no attribute."""
+    statements = "".join(f"        {line}\n" for line in body.splitlines())
+    text = f"from rclpy.node import Node\nclass Look(Node):\n    def __init__(self):\n        super().__init__('look')\n{statements}"
+    assert [fault.message for fault in nodes_of(text).faults] == messages

@@ -56,7 +56,7 @@ def autograder_zip(rubric: Rubric) -> bytes:
 def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
     """Return the files of the reference solution.
 
-    By these hints are found, and with these checks compare.
+    Hints are found by these files, and checks compare with them.
 
     Without such a check there are none if it is not below the rubric's folder. Raises GraderError.
     """
@@ -78,7 +78,7 @@ def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
 def package_files() -> dict[str, bytes]:
     """Return the files of the package by their paths in a wheel.
 
-    With the rubrics, without references and examples.
+    The rubrics are among them, without references and examples.
     """
     data = ("rubrics", "examples")  # in a wheel; in a checkout they are outside of the package
     own_files = {
@@ -96,7 +96,7 @@ def package_files() -> dict[str, bytes]:
 def _read_files(place: Path, root: Path) -> dict[PurePosixPath, bytes]:
     """Return the files at or below a place by their paths from a folder.
 
-    Without those of editors and Python.
+    Files of editors and Python are not among them.
     """
     paths = [place] if place.is_file() else [path for path in place.rglob("*") if path.is_file()]
     own_files = {
@@ -136,7 +136,7 @@ def requirements(extra: str) -> list[str]:
 def _without_extra(requirement: str, extra: str) -> str:
     """Return a requirement without its condition on an extra.
 
-    Empty if it belongs to another extra.
+    It is empty if it belongs to another extra.
     """
     name, _, marker = requirement.partition(";")
     condition = _EXTRA.search(marker)

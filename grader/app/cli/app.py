@@ -151,7 +151,7 @@ def _describe_error(error: OSError) -> str:
 def _complete() -> int:
     """Print the completions of the word at the cursor.
 
-    Nothing if there is an error, which the shell would show.
+    It prints nothing if there is an error, which the shell would show.
     """
     with redirect_stderr(StringIO()), suppress(Exception):
         try:

@@ -1,6 +1,6 @@
 """What ends a command early.
 
-Ctrl-C, without the interpreter's messages, and limits of processor time and memory.
+This is Ctrl-C, without the interpreter's messages, and limits of processor time and memory.
 
 Everything that reads a student's files counts its own work. The outer limits are for work that is
 not counted.

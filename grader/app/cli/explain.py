@@ -1,6 +1,6 @@
 """grader explain and grader schema.
 
-What codes and checks mean, and what the files of the grader hold.
+They print what codes and checks mean, and what the files of the grader hold.
 """
 
 from typing import Annotated, Literal, get_args

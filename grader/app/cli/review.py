@@ -1,6 +1,6 @@
 """grader mark and grader review.
 
-Manual grading by command, on a page in the browser, or in a spreadsheet.
+A person grades by command, on a page in the browser, or in a spreadsheet.
 """
 
 from pathlib import Path

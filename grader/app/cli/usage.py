@@ -59,7 +59,7 @@ _IN_WORKSPACE = {
 def commands_here(folder: Path) -> str:
     """Return what can be done in a folder with a package, a robot or a gradebook, in lines.
 
-    Empty for another folder.
+    It is empty for another folder.
     """
     try:
         names = [entry.name for entry in sorted(folder.iterdir(), key=lambda entry: entry.name)]

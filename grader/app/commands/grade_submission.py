@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from grader.app.grading import GradeRequest, GradeRun, grade_submission, save_reports
+from grader.app.grading import GradeRequest, GradeRun, grade_request, save_reports
 from grader.app.saving import check_saves
 from grader.lab.rubric.rubric_files import list_files
 from grader.report.writing import Warn
@@ -13,7 +13,7 @@ def grade_and_save(request: GradeRequest, warn: Warn, show: Callable[[GradeRun],
     """Grade a submission, show its report, and save reports and fixed files. Raises GraderError."""
     rubric = list_files(request.rubric, request.answers) if request.saves else ()
     check_saves(request.saves, rubric, request.path)
-    run = grade_submission(request, warn)
+    run = grade_request(request, warn)
     files: Mapping[Path, bytes] = {}
     if request.fix is not None and run.fix is not None:
         from grader.app.hints_and_fix import files_to_fix  # late: few ask for it

@@ -1,6 +1,6 @@
 """Read the robots at a path as ROS 2 does, with joints at given positions.
 
-And what is wrong in the packages around them.
+Also find what is wrong in the packages around them.
 """
 
 import os
@@ -78,7 +78,7 @@ class InspectRequest(NamedTuple):
 def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
     """Show an inspection, and save the reports that `--save` names.
 
-    With `--watch` after every change. Return whether nothing is certainly wrong. Raises
+    With `--watch`, do so after every change. Return whether nothing is certainly wrong. Raises
     GraderError.
     """
     saves = request.saves

@@ -199,7 +199,7 @@ def _stamps_before(began: int, stamps: _Stamps) -> _Stamps:
 def _stamps(paths: Iterable[Path], own_paths: Collection[str] = ()) -> _Stamps:
     """Return what identifies each file and its content.
 
-    Of a folder, each file and folder that a grading looks at.
+    Of a folder, it is that of each file and folder that a grading looks at.
     """
     stamps: _Stamps = {}
     for path in paths:

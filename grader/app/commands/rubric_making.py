@@ -18,7 +18,7 @@ from grader.classroom.run.preloading import PRELOAD
 from grader.files.reading import URDF_LIMIT
 from grader.lab.authoring.draft import Head, RubricDraft, draft
 from grader.lab.authoring.draft_choice import WITHOUT, DraftChoice
-from grader.lab.authoring.facts import Omission, Solution
+from grader.lab.authoring.expectations import Omission, Solution
 from grader.lab.authoring.mutant_kinds import KindScore
 from grader.lab.authoring.mutants import Mutant
 from grader.lab.authoring.rubric_test import (

@@ -129,7 +129,7 @@ class RobotPages:
     def _page(self, address: str) -> str:
         """Return the page of a robot; of the first one for an empty address, empty without any.
 
-        That of a graph for the address of one.
+        For the address of a graph, it is the page of the graph.
         """
         if address.startswith(_GRAPH):
             return self._graph(address)

@@ -1,6 +1,6 @@
 """The robots that `grader view` shows.
 
-One that is graded against a rubric, or all that an inspection finds.
+This is one that is graded against a rubric, or all that an inspection finds.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.app.commands.inspect_urdf import InspectRequest, open_and_inspect
-from grader.app.grading import GradeRequest, grade_submission
+from grader.app.grading import GradeRequest, grade_request
 from grader.base.errors import GraderError, InputError
 from grader.base.problems import Problem
 from grader.base.source import SourceOf
@@ -159,7 +159,7 @@ def _graded(
     request: ViewRequest, arg: Sequence[str], log: bytes | None, notes: dict[str, None]
 ) -> ViewedFiles:
     """Return the robot that is graded."""
-    run = grade_submission(
+    run = grade_request(
         GradeRequest(
             path=request.path,
             rubric=request.rubric,

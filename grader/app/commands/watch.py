@@ -12,7 +12,7 @@ from grader.app.grading import (
     MAX_NAMED_CRITERIA,
     GradeRequest,
     GradeRun,
-    grade_submission,
+    grade_request,
     requested_rubric,
     save_reports,
 )
@@ -54,7 +54,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> None:
     last: Report | None = None
 
     def work() -> tuple[GradeRun, Sequence[Path]]:
-        run = grade_submission(request, terminal.warn)
+        run = grade_request(request, terminal.warn)
         return run, run.besides
 
     def show(run: GradeRun) -> None:

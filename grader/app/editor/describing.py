@@ -75,7 +75,7 @@ def _plain(text: str) -> str:
 def _of_robots(look: Look, kind: str, name: str, owners: Collection[str]) -> Iterator[str]:
     """Yield the pose of a link and what a joint does, in each robot that has it.
 
-    Where the file belongs to some robots, only in these.
+    Where the file belongs to some robots, they are yielded only of these.
     """
     are_known = any(path in owners for path in look.robots)
     for path, robot in look.robots.items():

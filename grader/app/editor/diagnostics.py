@@ -60,8 +60,8 @@ def make_diagnostics(
 ) -> dict[str, list[lsp.Diagnostic]]:
     """Return what is wrong with the files of a folder, by their paths.
 
-    The problems, and the mistakes that lose points of a rubric. What a problem costs is said
-    with it.
+    These are the problems, and the mistakes that lose points of a rubric. What a problem costs is
+    said with it.
     """
     ranges = TextRanges(look, root)
     shown: dict[str, list[lsp.Diagnostic]] = {}
@@ -228,7 +228,7 @@ def _related(
 ) -> list[lsp.DiagnosticRelatedInformation]:
     """Return the other places of a diagnostic.
 
-    What was meant, the calls of macros, the criteria that fail by it.
+    These are what was meant, the calls of macros, and the criteria that fail by it.
     """
     related_places = []
     for name, call in shown.finding.location.calls:

@@ -111,7 +111,7 @@ class _GraderServer(LanguageServer):
     def find_session(self, uri: str) -> tuple[EditorSession, str] | None:
         """Return the session that a file belongs to, with its path there.
 
-        None for a file outside of the folders. In an editor without a folder it is that of
+        It is None for a file outside of the folders. In an editor without a folder it is that of
         its package, or of a robot's folder.
         """
         name = to_fs_path(uri)
@@ -224,7 +224,7 @@ class _GraderServer(LanguageServer):
     ) -> _T | None:
         """Return an answer about a place in a file, from a look at the files as they are now.
 
-        None where there is none.
+        It is None where there is none.
         """
         session_and_path = self.find_session(uri)
         if session_and_path is None:

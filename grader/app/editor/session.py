@@ -66,7 +66,7 @@ class EditorSession:
     def _read_settings(self) -> Settings:
         """Return the settings of the workspace.
 
-        None where they cannot be read: `complaint` says why.
+        They are None where they cannot be read: `complaint` says why.
         """
         self.complaint = ""
         try:

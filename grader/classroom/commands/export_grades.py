@@ -1,6 +1,6 @@
 """Export the current grades.
 
-As CSV, JSON or pages, into a file of an LMS, and the reports as feedback for an LMS.
+They go into CSV, JSON, pages or a file of an LMS, and the reports become feedback for an LMS.
 """
 
 from collections.abc import Mapping, Sequence
@@ -262,7 +262,7 @@ def _names_in_zip(
 def _refuse_options(request: ExportRequest) -> None:
     """Raise GraderError for an option that the target does not take.
 
-    And for a file that must not be replaced.
+    A file that must not be replaced raises it, too.
     """
     into, output, feedback = request.into, request.output, request.feedback
     given = {"--into": into, "--feedback": feedback, "--excel": request.excel}

@@ -1,6 +1,6 @@
 """Give and withdraw marks by command.
 
-Of one student, of all who submitted nothing, and of a CSV file.
+They are those of one student, of all who submitted nothing, or of a CSV file.
 """
 
 from collections.abc import Iterable, Iterator, Sequence

@@ -2,7 +2,7 @@
 
 They are computed from the results, the rubric, the roster and the marks of people.
 
-Last, the grades as a table, one row a student: `grades.csv`, and `export csv`, which people may
+The grades as a table, one row a student, are `grades.csv`, and `export csv`, which people may
 change.
 """
 
@@ -208,7 +208,7 @@ class Gradebook:
     def reopened(self, stored: StoredResult) -> Submission | None:
         """Return a submission as it was graded.
 
-        None if it has moved or changed since, or cannot be read.
+        It is None if it has moved or changed since, or cannot be read.
         """
         settings = self.settings
         try:

@@ -80,7 +80,7 @@ class ReviewItem(NamedTuple):
     def view(self) -> str:
         """A text that tells whether the item is as a page shows it.
 
-        Without the names of its students.
+        It does not depend on the names of its students.
         """
         shown = []
         for member in self.members:
@@ -116,7 +116,7 @@ class ReviewFilter(NamedTuple):
     def members(self, item: ReviewItem, kept: Collection[Key] = ()) -> tuple[ReviewStudent, ...]:
         """Return the students of an item that are shown.
 
-        Those in `kept` whatever their state is.
+        Those in `kept` are shown whatever their state is.
         """
         if self.criterion not in ("", item.criterion.id):
             return ()
@@ -135,7 +135,7 @@ def review_items(
 ) -> dict[Place, ReviewItem]:
     """Return what needs manual grading, and what else has a mark.
 
-    In the rubric's order, each criterion by student.
+    The items are in the rubric's order, each criterion by student.
 
     Those without an answer are the last item of a criterion. Unreadable submissions are omitted:
     they need a fix, not points. So are criteria that the rubric adjusts, and students with a final

@@ -1,7 +1,7 @@
 """What a rubric did to a class, before grades go out.
 
-Criteria that all students pass or fail, that need manual grading, and equal robots with different
-points.
+It finds criteria that all students pass or fail, or that need manual grading, and equal robots with
+different points.
 """
 
 from collections.abc import Sequence

@@ -38,7 +38,7 @@ class Summary(NamedTuple):
 class CriterionFigures(NamedTuple):
     """The students by each of COUNTS, and the mean share of the points that they earned.
 
-    None if open or adjusted.
+    The share is None if the criterion is open or adjusted.
     """
 
     criterion: Criterion
@@ -49,7 +49,7 @@ class CriterionFigures(NamedTuple):
 class _CommonMistake(NamedTuple):
     """A mistake that several students made in a criterion.
 
-    Of one that is measured, how far it is off.
+    Of a mistake that is measured, it has how far it is off.
     """
 
     criterion: str
@@ -60,7 +60,7 @@ class _CommonMistake(NamedTuple):
 class CriterionMistakes(NamedTuple):
     """The mistakes in a criterion.
 
-    Of how many students, of how many kinds, and the most common ones.
+    It says of how many students and of how many kinds they are, and has the most common ones.
     """
 
     criterion: str

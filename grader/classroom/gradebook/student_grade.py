@@ -214,7 +214,7 @@ class StudentGrade:
     def total(self) -> Decimal | None:
         """The final mark, else the points after the late penalty.
 
-        None for an excuse, and without a submission.
+        It is None for an excuse, and without a submission.
         """
         if self.has_final or self.stored is None:
             return self.final_points
@@ -342,8 +342,8 @@ class StudentGrade:
     def is_counted(self) -> bool:
         """Whether the grade is in the figures of the class.
 
-        Also one that is open, if something of it is decided. One without a robot is not, until it
-        has a mark.
+        One that is open counts, too, if something of it is decided. One without a robot does
+        not, until it has a mark.
         """
         if self.is_without_robot:
             return False

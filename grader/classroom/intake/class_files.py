@@ -118,7 +118,7 @@ def open_class_submission(
 def digest_of_unread(root: str, paths: tuple[str, ...]) -> str:
     """Return the hash of the bytes of files that are no submission.
 
-    Empty if they cannot be read.
+    It is empty if they cannot be read.
     """
     digest = sha256()
     try:
@@ -183,7 +183,7 @@ def _is_robot(source: ClassListing, path: str) -> bool:
 def _digest(name: str, max_size: int) -> "hashlib._Hash":
     """Return a hash of the name, which is in the report.
 
-    And of the limit for a URDF if it is not the default.
+    The limit for a URDF is part of it if it is not the default.
     """
     return sha256(repr(name if max_size == URDF_LIMIT else (name, max_size)).encode())
 

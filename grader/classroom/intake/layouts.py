@@ -145,7 +145,7 @@ def is_submission(name: str) -> bool:
 def read_name(name: str, layout: str) -> list[NamedPath]:
     """Return how a name can be read.
 
-    In Canvas as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip.
+    In Canvas, team_7_101_555_lab6.zip is of team and 7, or of team_7 and 101.
     """
     matches = [_read_path(one) for one in _PATTERNS[layout].finditer(name)]
     is_known = layout == "moodle" or bool(
@@ -318,7 +318,7 @@ def _read_time(folder: ClassFolder, path: str) -> str:
 def teams(folder: ClassFolder) -> Iterator[NamedPath]:
     """Yield the submissions of the students in lab folders.
 
-    And all other submissions as a whole.
+    All other submissions are yielded as a whole.
     """
     whole = []
     for team in sorted(folder.children.folders):

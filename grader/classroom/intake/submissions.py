@@ -224,7 +224,7 @@ def _inner_class(folder: ClassFolder) -> ClassFolder:
 def _only_folder(folder: ClassFolder) -> str:
     """Return the only folder in a folder without other submissions.
 
-    Empty if there is none, or it is a student's.
+    It is empty if there is none, or it is a student's.
     """
     name, *others = folder.entries or [""]
     is_student = (
@@ -336,7 +336,7 @@ def _files_below(listing: ClassListing, top: str) -> list[str]:
 class _Owners:
     """The submission of each student, by the index on the roster.
 
-    Those that match none; those that are ambiguous.
+    Those that match none are apart, and so are those that are ambiguous.
     """
 
     def __init__(self, roster: Roster | None, roots: Sequence[tuple[ClassListing, str]]) -> None:
@@ -443,7 +443,7 @@ class _Owners:
     def _shown(self, one: ClassSubmission, path: str = "") -> str:
         """Return a path as a person can write it on the roster.
 
-        Of several class folders with the name of its own.
+        Of several class folders, it begins with the name of its own.
         """
         return _plain_path(self._path(one, path or one.paths[0]))
 
@@ -489,7 +489,7 @@ class _Owners:
     def intake(self, layout: str) -> Intake:
         """Return what was found.
 
-        Of a student on the roster only the LMS's name and ids: other names are anyone's.
+        Of a student on the roster, it has only the LMS's name and ids: other names are anyone's.
         """
         students = self.people.students
         unclear = frozenset(students[index].key for index in self._unclear - self._owned.keys())

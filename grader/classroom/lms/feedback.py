@@ -45,8 +45,8 @@ _ARCHIVES = (".zip", ".tar.gz", ".tgz")
 def lost_points(results: Iterable[Result], *, has_open_zeros: bool = False) -> Iterator[str]:
     """Yield a line for each criterion below its maximum.
 
-    Also for one with a comment, or with points that no check decides; with `has_open_zeros` these
-    count as 0.
+    There is one, too, for a criterion with a comment, or with points that no check decides; with
+    `has_open_zeros` these count as 0.
     """
     for result in results:
         mark, criterion = result.manual_mark, result.criterion
@@ -82,7 +82,7 @@ def _points_text(result: Result, *, has_open_zeros: bool) -> str:
 def comment_html(opening: str, lines: Sequence[str]) -> str:
     """Return a comment in one line.
 
-    First `opening`, which begins with Grade, then a list of lines, of many the first.
+    It has first `opening`, which begins with Grade, then a list of lines, of many the first.
     """
     items = "".join(f"<li>{_escape(line)}</li>" for line in first_lines(lines, MAX_LINES))
     text = f"<p>{_escape(opening)}</p>"

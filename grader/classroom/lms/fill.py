@@ -199,7 +199,7 @@ def _note_lines(notes: Sequence[_Note]) -> list[str]:
 def by_reason(notes: Iterable[tuple[str, str, str]]) -> list[str]:
     """Return a line for each reason: who has it, of several how many and the first of them.
 
-    Of each note the kind, who is concerned, and why.
+    Each note has the kind, who is concerned, and why.
     """
     concerned = defaultdict[tuple[str, str], list[str]](list)
     for kind, who, why in notes:
@@ -301,7 +301,7 @@ def _student_in(row: TableRow, roles: Mapping[str, int]) -> Student:
 def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptions) -> int:
     """Return the column that is named.
 
-    Else the one whose title is most like the title or the id of the lab.
+    Without a name, it is the one whose title is most like the title or the id of the lab.
     """
     wanted = options.column.strip()
     ranks = dict[int, int]()

@@ -1,6 +1,6 @@
 """The folder of a gradebook.
 
-The files in it, how it is recognised, who may write it, and its settings in `class.toml`.
+Here are the files in it, how it is recognised, who may write it, and its settings in `class.toml`.
 
 The settings are what a later run needs to grade the class again.
 """

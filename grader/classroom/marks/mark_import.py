@@ -168,7 +168,7 @@ class MarkImport(NamedTuple):
 def exported_text(points: Mapping[str, str]) -> str:
     """Return the hashes of the points in a row of an export.
 
-    That of all criteria, and that of the grade.
+    These are that of all criteria, and that of the grade.
     """
     *criteria, total = points
     return _hash_points(points, criteria) + _hash_points(points, [total])

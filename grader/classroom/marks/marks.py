@@ -1,6 +1,6 @@
 """The marks of people: the rows of the CSV files in a folder.
 
-And which of them counts for a student and criterion.
+Here it is also decided which of them counts for a student and criterion.
 
 The latest time counts, of equal times in one file the later row. A row without a time is newer than
 all with one. Different rows that have no order are refused; equal rows are one. A comment without

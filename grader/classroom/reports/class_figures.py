@@ -27,7 +27,7 @@ def warn_of_ignored(book: Gradebook, warn: Warn) -> None:
 def record_run(folder: Path, warn: Warn) -> None:
     """Record the current grades as a run, so that `diff` compares with them.
 
-    Unless the newest one has them.
+    Nothing is recorded if the newest run has them.
     """
     try:
         with batch_lock(folder):
@@ -39,7 +39,7 @@ def record_run(folder: Path, warn: Warn) -> None:
 def append_run(book: Gradebook) -> Results | None:
     """Append a run with the current grades, and return the results with it.
 
-    None if there is no need, or no way.
+    It is None if there is no need, or no way.
     """
     now = book.run_with({one.student.key: book.run_grade(one) for one in book})
     if book.results.unfinished or book.is_outdated or now.has_equal_grades(book.run):

@@ -1,6 +1,6 @@
 """A class as JSON, schema grader/class/v1.
 
-And the changes between two runs, schema grader/diff/v1.
+The changes between two runs have the schema grader/diff/v1.
 """
 
 from collections.abc import Sequence

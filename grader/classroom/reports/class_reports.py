@@ -30,7 +30,7 @@ from grader.classroom.results.results import StoredResult, hash_values
 from grader.classroom.run.preloading import PRELOAD
 from grader.files.reading import hash_bytes
 from grader.lab.checks.outcome import Outcome
-from grader.lab.grading.grade import grade as grade_submission
+from grader.lab.grading.grade import grade as grade_opened
 from grader.lab.grading.report import Grade, Report, Result
 from grader.lab.submission.submission import Submission
 from grader.report.formats import Format, render
@@ -82,7 +82,7 @@ class _Done(NamedTuple):
 class _ReportTask(NamedTuple):
     """A report to write: the student and the name of the file.
 
-    Without hints if their search was lost.
+    The report has no hints if their search was lost.
     """
 
     key: str
@@ -153,7 +153,7 @@ def _graded_again(
 ) -> Report:
     """Return the report on a submission as it was graded.
 
-    With its details if it is still there, and with hints if what is kept of them is given.
+    It has its details if the submission is still there, and hints if what is kept of them is given.
     """
     submission = book.reopened(stored) if stored.verdict != "errored" else None
     if submission is None:
@@ -163,7 +163,7 @@ def _graded_again(
         if Reason.UNREADABLE in grade.concerns:
             return report._replace(notes=(f"{stored.reason}. {_SUBMIT_AGAIN}",))
         return report
-    report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
+    report = grade_opened(book.rubric, submission, book.settings.parts, is_one_of_class=True)
     if kept is None or book.rubric.hints == "none" or not report.has_failures:
         return report
     return kept.with_hints(report, submission, hash_values(stored.context, book.rubric.sha256))
@@ -172,7 +172,7 @@ def _graded_again(
 def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
     """Raise InputError if reports cannot be written to a folder.
 
-    Or if the next run would read it as a submission.
+    It is raised, too, if the next run would read the folder as a submission.
     """
     refuse_symlinks(folder, submissions)
     cannot = f"cannot write files to {printable_path(folder)}"
@@ -212,7 +212,7 @@ def write_reports(
 ) -> None:
     """Write a report for each student who has a result, a final mark or an excuse.
 
-    In HTML also the class's page.
+    In HTML, also write the class's page.
 
     Raises InputError and RubricError, which concern all reports.
     """

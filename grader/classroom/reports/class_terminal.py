@@ -1,6 +1,6 @@
 """A class on a terminal.
 
-The table that `batch` prints, the statistics, what changed between two runs.
+Here are the table that `batch` prints, the statistics, and what changed between two runs.
 
 Text of submissions is never interpreted as markup or control codes.
 """
@@ -81,7 +81,7 @@ class _Row(NamedTuple):
 class ClassTable:
     """One row a student, first of those who need attention, then by family name.
 
-    Then the mean, and what needs attention.
+    Below are the mean, and what needs attention.
 
     `add` takes the grades one by one, so that a large class is never held whole.
     """
@@ -187,7 +187,7 @@ class ClassTable:
 def _costs(losses: Sequence[tuple[Decimal, str]], width: int) -> str:
     """Return the criteria that cost most, with their points.
 
-    As many whole ones as fit, but one at least.
+    They are as many whole ones as fit, but one at least.
     """
     text = ""
     for most in range(1, _MAX_COSTS + 1):

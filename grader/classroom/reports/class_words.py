@@ -45,8 +45,8 @@ def late_text(grade: StudentGrade) -> str:
 def head_lines(statistics: ClassStatistics) -> Iterator[str]:
     """Yield the lines above the figures of a class.
 
-    How many students were graded and how many not, the grades in one line, what is open, and
-    the sections.
+    They say how many students were graded and how many not, the grades in one line, what is open,
+    and the sections.
     """
     words = {
         "graded": "graded",

@@ -1,6 +1,6 @@
 """What the reports of a class keep for the next time, in `reports.jsonl`.
 
-The hints that were found in a submission, and the files that were written.
+These are the hints that were found in a submission, and the files that were written.
 
 Robots that are equal share their hints. The file may be deleted: then hints are searched again, and
 all reports written again.
@@ -34,8 +34,8 @@ _OWN = "\0"  # in place of the path of the URDF, which may have the name of a st
 class WrittenReport(NamedTuple):
     """A file that was written.
 
-    What it shows, the hash of its bytes, the key of its hints, and the small picture of the
-    robot for the class's page.
+    It has what the file shows, the hash of its bytes, the key of its hints, and the small picture
+    of the robot for the class's page.
     """
 
     shows: str

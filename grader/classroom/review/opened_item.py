@@ -128,7 +128,7 @@ def _with_robot(
 ) -> OpenedItem:
     """Return an item with the views of the robot.
 
-    And the files around the places that decide its criteria.
+    The item gets the files around the places that decide its criteria, too.
     """
     picture, views, legend = draw_report(report), "", list[str]()
     space = None
@@ -152,7 +152,7 @@ def _with_robot(
 def _without_names(picture: Picture) -> Picture:
     """Return a picture without the names of links.
 
-    And so without the numbers and sentences about them.
+    So it has none of the numbers and sentences about them.
     """
     bodies = tuple(body._replace(link="") for body in picture.scene.bodies)
     scene = replace(picture.scene, bodies=bodies, missing=(), boxed=())
@@ -185,7 +185,7 @@ def _deciding_place(report: Report, result: Result) -> Location | None:
 def _unknown_place(report: Report, criterion: Criterion) -> Location | None:
     """Return the place of what keeps a criterion from being determined.
 
-    First in a file that its check looks at.
+    This is first searched in a file that its check looks at.
     """
     if criterion.check.subject in _OF_ROBOT:
         problems = [one for one in report.problems if one.kind.effect == "undetermined"]

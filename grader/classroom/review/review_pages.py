@@ -1,6 +1,6 @@
 """The pages of a review in the browser.
 
-One item in words and pictures, the end of the review, a message.
+These are one item in words and pictures, the end of the review, and a message.
 """
 
 from collections.abc import Mapping, Sequence
@@ -175,7 +175,7 @@ def _total(marks: Sequence[Mark | None]) -> str:
 def _marked_text(marks: Sequence[Mark | None], *, is_older: bool) -> str:
     """Return what is marked of an item: the first mark, with the points of all.
 
-    Empty without one.
+    It is empty without one.
     """
     given = [mark for mark in marks if mark is not None]
     if not given:
@@ -189,7 +189,7 @@ def _marked_text(marks: Sequence[Mark | None], *, is_older: bool) -> str:
 def end_page(marked: int, left: int, place: Mapping[str, Any], gradebook: str, lms: str) -> str:
     """Return the page after the last item.
 
-    How many marks were given, how many are left, and the next command.
+    It says how many marks were given, how many are left, and the next command.
 
     It exports the grades to the LMS that the class came from, if that is known.
     """

@@ -129,7 +129,7 @@ class ReviewSession:
     def left(self) -> int:
         """The number of results that need manual grading.
 
-        Of the question and section that are shown.
+        Only those of the question and section that are shown count.
         """
         unmarked = ReviewFilter(*self.filter[:2])
         return sum(len(unmarked.members(item)) for item in self.items.values())
@@ -155,14 +155,14 @@ class ReviewSession:
     def previous(self, position: int) -> int:
         """Return the position of the previous item that is shown.
 
-        The same position if there is none.
+        It is the same position if there is none.
         """
         return max((at for at in self.listed if at < position), default=position)
 
     def next_question(self, position: int) -> int:
         """Return the position of the student's next item.
 
-        After the last one that of the next student's first.
+        After the last one, it is that of the next student's first.
 
         An item of several students is that of the first one.
         """
@@ -178,7 +178,7 @@ class ReviewSession:
     def people(self, position: int) -> list[tuple[str, int, int]]:
         """Return the students with items of the question and section that are shown.
 
-        Whatever their state is.
+        Their state does not matter.
 
         Each has a label, the number of unmarked criteria, and the position of an item: of the same
         question as that at a position, else the first unmarked one.
@@ -201,7 +201,7 @@ class ReviewSession:
     def so_far(self, item: ReviewItem) -> str:
         """Return the points of a student so far, and how many need manual grading.
 
-        Empty for several students.
+        It is empty for several students.
         """
         grade = self.book.grade(item.members[0].student.key)
         if item.members[1:] or grade.total is None:
@@ -215,7 +215,7 @@ class ReviewSession:
     def lms(self) -> str:
         """The LMS that the class came from, as its submissions or roster say.
 
-        Empty if they do not.
+        It is empty if they do not.
         """
         students = (self.book.student(one.student, one) for one in self.book.results.all())
         return next(

@@ -2,8 +2,8 @@
 
 It is a separate line, never part of a criterion.
 
-As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each day begun, and never
-below the floor.
+As in Canvas (app/models/late_policy.rb), it is a percentage of the maximum for each day begun, and
+never leads below the floor.
 """
 
 import re
@@ -163,8 +163,8 @@ def _measured_days(times: Student, grace: timedelta, due: datetime) -> Lateness 
     """Return the lateness of a student with a later deadline, of whom Moodle measured the time.
 
     Moodle measures it from the deadline of the class, `due`, and rounds down: where the rest
-    decides about a day, the days are a guess. None if the deadline of the class is later: then it
-    may not be the one that Moodle knows.
+    decides about a day, the days are a guess. They are None if the deadline of the class is later:
+    then it may not be the one that Moodle knows.
     """
     # Without an extension that only the roster has.
     measured = timedelta(days=(times.days_late or 0) + times.extension_days)

@@ -121,9 +121,9 @@ class Roster(NamedTuple):
 
 
 def plain(word: str) -> str:
-    """Return an id, name or group without differences of case and spaces.
+    """Return an id, name or group without differences of case, spaces, `_` and `-`.
 
-    Nor of `_` and `-`. `Doe, Jane` is Jane Doe.
+    `Doe, Jane` is Jane Doe.
     """
     if not word.isascii():
         word = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", word).casefold())
@@ -240,7 +240,7 @@ def _normalise(row: dict[str, str]) -> Iterator[str]:
 def _student(row: dict[str, str]) -> Student:
     """Return the student in a row with values as they should be.
 
-    Without a key if it identifies none.
+    The student has no key if the row identifies none.
     """
     name = row["name"] or f"{row['first']} {row['last']}".strip()
     login, sis = row["login"] or row["github"], row["sis"]
@@ -298,7 +298,7 @@ def _days(text: str) -> float | None:
 def _read_days(status: str) -> float | None:
     """Return by how many days Moodle's Status says that a submission was late.
 
-    None if that is not clear.
+    It is None if that is not clear.
     """
     for part in map(str.strip, status.casefold().split(" - ")):
         if re.fullmatch(rf"{_UNIT}(?: {_UNIT})? late", part):
@@ -356,7 +356,7 @@ class _Match(NamedTuple):
     def owners(self) -> tuple[int, ...]:
         """The student whom it belongs to, or each member of its group.
 
-        Empty if that is not certain.
+        It is empty if that is not certain.
         """
         if self.by == GROUP or (len(self.students) == 1 and self.by < GROUP):
             return self.students
@@ -397,7 +397,7 @@ class People:
     def match(self, claim: Student) -> _Match:
         """Return whose a submission is by what its name claims.
 
-        With a `group`, only of a member of that team.
+        With a `group`, it is only that of a member of that team.
 
         What has the name of a group is the group's, unless an id in it is that of another student:
         Canvas writes the id of a member, Moodle a number of the group's own. Of `aliases` it is not
@@ -425,7 +425,7 @@ class People:
     def _person(self, claim: Student, name: str) -> _Match:
         """Return the students with the best words of a claim.
 
-        Without those whom the LMS knows by another id.
+        Those whom the LMS knows by another id are not among them.
         """
         login = plain(claim.login)
         names = [name, login, _surname(login) if claim.group else ""]

@@ -102,7 +102,7 @@ def known(noun: str, cell: str, names: Collection[str]) -> str:
 def as_number(cell: str, names: tuple[str, ...]) -> list[str]:
     """Return the names that a spreadsheet may have changed into a number.
 
-    For example 0012 into 12, 123456 into 1.2E+05.
+    For example, it changes 0012 into 12, and 123456 into 1.2E+05.
     """
     if (number := number_in(cell)) is None:
         return []

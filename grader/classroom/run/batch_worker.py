@@ -214,7 +214,7 @@ def reference_hashes(data: bytes, path: str) -> tuple[str, ...]:
 def _why_unreadable(submission: Submission) -> str:
     """Return why nothing in a submission could be read, although its folder could.
 
-    Empty if something was read.
+    It is empty if something was read.
 
     A damaged or empty archive makes a submission unreadable if there is nothing else to grade.
     """
@@ -241,7 +241,7 @@ def _has_nothing_to_grade(submission: Submission) -> bool:
 def _in_place_of_robot(report: Report) -> str:
     """Return the files of a submission without the robot and the package that are graded.
 
-    Empty for another submission.
+    It is empty for another submission.
     """
     subjects = {one.criterion.check.subject for one in report.results}
     if subjects.isdisjoint(("urdf", "robot")) or not _has_nothing_to_grade(report.submission):

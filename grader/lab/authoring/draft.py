@@ -1,6 +1,6 @@
-"""Write a rubric from the facts of a reference.
+"""Write a rubric from the expectations of a reference.
 
-The facts are tried on the reference. Those that it passes are written in TOML, as a person would.
+They are tried on the reference. Those that it passes are written in TOML, as a person would.
 
 Each criterion has the usual tolerances of its check; those about one link follow each other under
 its heading.
@@ -20,14 +20,20 @@ from grader.base.text import capitalised, cut, printable
 from grader.base.toml_file import assignment, read_toml, toml_literal
 from grader.base.toml_types import WrongValue
 from grader.lab.authoring.draft_choice import DraftChoice
-from grader.lab.authoring.element_facts import details_apart, element_facts
-from grader.lab.authoring.facts import CarriedFact, Fact, Omission, Solution, robot_facts
-from grader.lab.authoring.package_facts import (
-    measure_facts,
-    name_facts,
-    naming_facts,
-    package_facts,
-    value_facts,
+from grader.lab.authoring.element_expectations import details_apart, element_expectations
+from grader.lab.authoring.expectations import (
+    CarriedExpectation,
+    Expectation,
+    Omission,
+    Solution,
+    robot_expectations,
+)
+from grader.lab.authoring.package_expectations import (
+    measure_expectations,
+    name_expectations,
+    naming_expectations,
+    package_expectations,
+    value_expectations,
     words_of_launches,
 )
 from grader.lab.checks.outcome import Outcome
@@ -127,7 +133,8 @@ _MAX_TITLE = 100
 
 _Subjects = Mapping[str, Any]  # what checks examine, by the names of their parameters
 
-_MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
+# More than the largest robots have: criteria cost the square of their number.
+_MAX_EXPECTATIONS = 2000
 
 
 class Head(NamedTuple):
@@ -143,15 +150,15 @@ class Head(NamedTuple):
 
 
 class _DraftCriterion(NamedTuple):
-    """A criterion of a new rubric: a fact that the reference passes, and what the check says."""
+    """A criterion of a new rubric: what the reference passes, and what the check says."""
 
-    fact: Fact
+    expectation: Expectation
     title: str
 
     @property
     def is_of_package(self) -> bool:
         """Whether the package is needed for it."""
-        return self.fact.package is not None
+        return self.expectation.package is not None
 
 
 class RubricDraft(NamedTuple):
@@ -169,71 +176,77 @@ def draft(
     path: Path,
     choice: DraftChoice = _EVERYTHING,
 ) -> RubricDraft:
-    """Return a rubric for a file at `path` with a criterion for each fact that a check can test.
+    """Return a rubric for a file at `path`, with a criterion for each expectation.
 
     Other values of parameters are in it as comments. Without a robot it has no `solution`. Raises
     InputError.
     """
-    chosen, details = _chosen_facts(submission, solution, choice)
+    chosen, details = _chosen_expectations(submission, solution, choice)
     subjects: dict[str, Any] = {"submission": submission}
     if solution is not None:
         subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
-    rows_by_fact: dict[tuple[str, str | None, str], _DraftCriterion] = {}
+    rows_by_expectation: dict[tuple[str, str | None, str], _DraftCriterion] = {}
     omissions: list[Omission] = []
     values: dict[str, list[_DraftCriterion]] = {}
-    for fact in chosen:
-        row = fact if isinstance(fact, Omission) else _tried(subjects, fact)
+    for expectation in chosen:
+        row = expectation if isinstance(expectation, Omission) else _tried(subjects, expectation)
         if isinstance(row, Omission):
             omissions.append(row)
-            if row.fact is not None:
-                title = capitalised(row.fact.title)
-                values.setdefault(_WHEN_CORRECTED, []).append(_DraftCriterion(row.fact, title))
+            if row.expectation is not None:
+                title = capitalised(row.expectation.title)
+                values.setdefault(_WHEN_CORRECTED, []).append(
+                    _DraftCriterion(row.expectation, title)
+                )
         else:
-            arguments = toml_literal([row.fact.args, row.fact.arguments])
-            rows_by_fact[row.fact.check, row.fact.package, arguments] = row
-    rows = [*rows_by_fact.values()]
+            arguments = toml_literal([row.expectation.args, row.expectation.arguments])
+            rows_by_expectation[row.expectation.check, row.expectation.package, arguments] = row
+    rows = [*rows_by_expectation.values()]
     for detail in details:
         tried = _tried(subjects, detail)
         if isinstance(tried, _DraftCriterion):
             values.setdefault(detail.about, []).append(tried)
     if submission.packages and not choice.is_names_only:
-        values |= _values(subjects, submission, {row.fact.words for row in rows})
+        values |= _values(subjects, submission, {row.expectation.words for row in rows})
     data = _rubric_text(head, rows, values, choice).encode()
     return RubricDraft(data, read_rubric(data, path), tuple(omissions))
 
 
-def _chosen_facts(
+def _chosen_expectations(
     submission: Submission, solution: Solution | None, choice: DraftChoice
-) -> tuple[list[Fact | Omission], list[Fact]]:
-    """Return the facts of a reference that are chosen, without the names that are free.
+) -> tuple[list[Expectation | Omission], list[Expectation]]:
+    """Return the expectations of a reference that are chosen, without the names that are free.
 
     The details that a solution with programs leaves free are apart. Raises InputError for too many.
     """
     started = [*words_of_launches(submission)]
-    of_robot: Iterable[Fact | Omission] = ()
-    measured: Iterable[Fact] = ()
+    of_robot: Iterable[Expectation | Omission] = ()
+    measured: Iterable[Expectation] = ()
     if solution is not None:
-        of_robot = chain(robot_facts(solution), element_facts(solution, started))
+        of_robot = chain(robot_expectations(solution), element_expectations(solution, started))
         if has_programs(submission.workspace):
             of_robot = details_apart(iter(of_robot), solution.robot)
-        measured = chain(measure_facts(solution), naming_facts(solution))
-    of_packages = chain(package_facts(submission), name_facts(submission), measured)
-    chosen: list[Fact | Omission] = []
+        measured = chain(measure_expectations(solution), naming_expectations(solution))
+    of_packages = chain(package_expectations(submission), name_expectations(submission), measured)
+    chosen: list[Expectation | Omission] = []
     robot = solution.robot if solution is not None else None
-    for fact in islice(chain(of_robot, of_packages), _MAX_FACTS + 1):
-        if isinstance(fact, Omission):
-            chosen.append(fact)
-        elif choice.takes(fact) and (freed := choice.freed(fact, robot)) is not None:
+    for expectation in islice(chain(of_robot, of_packages), _MAX_EXPECTATIONS + 1):
+        if isinstance(expectation, Omission):
+            chosen.append(expectation)
+        elif choice.takes(expectation) and (freed := choice.freed(expectation, robot)) is not None:
             chosen.append(freed)
-    if len(chosen) > _MAX_FACTS:
+    if len(chosen) > _MAX_EXPECTATIONS:
         raise InputError(
-            f"the reference has more than {_MAX_FACTS} facts, which is too long for a "
+            f"the reference has more than {_MAX_EXPECTATIONS} facts, which is too long for a "
             "rubric: name a smaller one"
         )
     if not has_programs(submission.workspace):
         return chosen, []
-    details = [fact for fact in chosen if isinstance(fact, Fact) and fact.is_detail]
-    return [fact for fact in chosen if fact not in details], details
+    details = [
+        expectation
+        for expectation in chosen
+        if isinstance(expectation, Expectation) and expectation.is_detail
+    ]
+    return [expectation for expectation in chosen if expectation not in details], details
 
 
 def _values(
@@ -241,24 +254,26 @@ def _values(
 ) -> Mapping[str, list[_DraftCriterion]]:
     """Return the values of parameters that the reference certainly gets, by the names of nodes."""
     rows_by_subject: dict[str, list[_DraftCriterion]] = {}
-    facts = (
-        candidate_fact
-        for candidate_fact in value_facts(submission)
-        if candidate_fact.words not in known
+    expectations = (
+        expectation
+        for expectation in value_expectations(submission)
+        if expectation.words not in known
     )
-    for row in (_tried(subjects, fact) for fact in islice(facts, _MAX_FACTS)):
+    for row in (
+        _tried(subjects, expectation) for expectation in islice(expectations, _MAX_EXPECTATIONS)
+    ):
         if isinstance(row, _DraftCriterion):
-            rows_by_subject.setdefault(row.fact.about, []).append(row)
+            rows_by_subject.setdefault(row.expectation.about, []).append(row)
     return rows_by_subject
 
 
-def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
-    """Return the first of the facts that the reference passes.
+def _tried(subjects: _Subjects, expectation: Expectation) -> _DraftCriterion | Omission:
+    """Return the first of the expectations that the reference passes.
 
-    Or what it does not pass, and why.
+    If it passes none, return what it does not pass, and why.
     """
     reasons = []
-    for one in (fact, *fact.otherwise):
+    for one in (expectation, *expectation.otherwise):
         try:
             outcome = _outcome(subjects, one)
         except (MissingElement, NotDecided, UnknownShape) as error:
@@ -268,13 +283,11 @@ def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
             reasons.append(f"an argument must be {error}")
             continue
         if outcome.status == "passed":
-            carried = tuple(
-                carried_fact for carried_fact in one.carried if _holds(subjects, one, carried_fact)
-            )
+            carried = tuple(carried for carried in one.carried if _holds(subjects, one, carried))
             title = _cut_title(one.title or outcome.message)
             return _DraftCriterion(one._replace(carried=carried), capitalised(title))
         reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
-    return Omission(fact.words, reasons[0])
+    return Omission(expectation.words, reasons[0])
 
 
 def _cut_title(text: str) -> str:
@@ -285,38 +298,38 @@ def _cut_title(text: str) -> str:
     )
 
 
-def _holds(subjects: _Subjects, fact: Fact, carried: CarriedFact) -> bool:
-    """Return whether the reference passes what counts instead of a fact."""
+def _holds(subjects: _Subjects, expectation: Expectation, carried: CarriedExpectation) -> bool:
+    """Return whether the reference passes what counts instead of an expectation."""
     try:
-        instead = fact._replace(check=carried.check, arguments=carried.arguments)
+        instead = expectation._replace(check=carried.check, arguments=carried.arguments)
         return _outcome(subjects, instead).status == "passed"
     except (MissingElement, NotDecided, UnknownShape, WrongValue):
         return False
 
 
-def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
+def _outcome(subjects: _Subjects, expectation: Expectation) -> Outcome:
     """Return what a check says of the reference.
 
     Raise WrongValue for an argument that it does not take.
     """
-    check = find_check(fact.check)
+    check = find_check(expectation.check)
     assert check is not None
-    check = check.for_arguments(fact.arguments)
-    _, read = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
+    check = check.for_arguments(expectation.arguments)
+    _, read = read_toml(f"it = {toml_literal(expectation.arguments)}".encode(), Path())
     given = {}
     for name, value in read["it"].items():
         given[name] = check.parameters[name].type.parse(value)
     if "robot" in subjects:
         given = without_selectors(given, subjects["robot"])
-    usual, _ = _USUAL.get(fact.check, ({}, ""))
+    usual, _ = _USUAL.get(expectation.check, ({}, ""))
     arguments = {}
-    for name, value in fact.args.items():
+    for name, value in expectation.args.items():
         arguments[name] = str(value).lower() if isinstance(value, bool) else value
     submission = subjects["submission"]
     if arguments:
         submission = submission.under(arguments)
-    if fact.package:
-        submission = submission.with_package(fact.package)
+    if expectation.package:
+        submission = submission.with_package(expectation.package)
     known = {**subjects, "submission": submission, "package": submission.package}
     return check.outcome((known[name] for name in check.examined), {**usual, **given})
 
@@ -333,11 +346,11 @@ def _rubric_text(
     points = _points(of_robot, of_package, choice)
     checks: set[str] = set()
     for row in rows:
-        checks.add(row.fact.check)
-        checks.update(carried.check for carried in row.fact.carried)
+        checks.add(row.expectation.check)
+        checks.update(carried.check for carried in row.expectation.carried)
     part, usual = (_ROBOT if of_robot else _PACKAGE), Counter(points).most_common(1)[0][0]
     lines = [*_head_lines(head), *_default_lines(part, usual, checks)]
-    if any(row.fact.carried for row in rows):
+    if any(row.expectation.carried for row in rows):
         lines += ["", "# carried: not deducted if only these criteria caused the failure"]
     if of_robot:
         lines += _part_lines(_ROBOT, "The robot", "urdf")
@@ -346,13 +359,15 @@ def _rubric_text(
         lines += _part_lines(_PACKAGE, title, "package")
     shown = {node: criteria_of_node[:_MAX_VALUES] for node, criteria_of_node in values.items()}
     named = _with_ids([*of_robot, *of_package, *chain.from_iterable(shown.values())])
-    ids = {row.fact.words: name for name, row in named.items()}
+    ids = {row.expectation.words: name for name, row in named.items()}
     # A criterion refers to no value, which is only a comment.
-    of_criteria = {row.fact.words: ids[row.fact.words] for row in [*of_robot, *of_package]}
+    of_criteria = {
+        row.expectation.words: ids[row.expectation.words] for row in [*of_robot, *of_package]
+    }
     layout, about = _Layout(part, usual, of_criteria), ""
     for (name, row), worth in zip(named.items(), points, strict=False):
-        if row.fact.about != about:
-            about = row.fact.about
+        if row.expectation.about != about:
+            about = row.expectation.about
             lines += ["", f"# --- {printable(about)} ".ljust(_WIDTH, "-")]
         lines += layout.criterion(name, row, worth)
     if shown:
@@ -382,21 +397,21 @@ def _points(
 
 def _choose_share(row: _DraftCriterion) -> str:
     """Return the kind of thing that a criterion is about, which has its share of the points."""
-    if row.fact.check == "names_agree":
-        return _NODES if row.fact.arguments["of"] in _OF_NODES else _NAMES
-    if row.fact.check == "node_runs" and not _OF_CODE.isdisjoint(row.fact.arguments):
+    if row.expectation.check == "names_agree":
+        return _NODES if row.expectation.arguments["of"] in _OF_NODES else _NAMES
+    if row.expectation.check == "node_runs" and not _OF_CODE.isdisjoint(row.expectation.arguments):
         return _NODES
-    return _KIND_BY_CHECK.get(row.fact.check, _JOINTS)
+    return _KIND_BY_CHECK.get(row.expectation.check, _JOINTS)
 
 
 def _weight(row: _DraftCriterion, choice: DraftChoice) -> int:
     """Return how much a criterion counts beside others."""
-    is_effort = row.fact.check == "joint_limits" and "lower" not in row.fact.arguments
+    is_effort = row.expectation.check == "joint_limits" and "lower" not in row.expectation.arguments
     if choice.has_equal_weights or is_effort:
         return 1
-    if row.fact.check in _HEAVY:
+    if row.expectation.check in _HEAVY:
         return 3
-    return 1 if row.fact.check in _LIGHT else 2
+    return 1 if row.expectation.check in _LIGHT else 2
 
 
 def _shared(kinds: Sequence[str], weights: Sequence[int], total: int | None) -> list[Decimal]:
@@ -477,8 +492,10 @@ def _value_lines(
     )
     for node, rows in values.items():
         for row in rows[:_MAX_VALUES]:
-            plain = row._replace(fact=row.fact._replace(about=""))
-            lines = layout.criterion(layout.ids[row.fact.words], plain, Decimal(0), _MAX_COMMENT)
+            plain = row._replace(expectation=row.expectation._replace(about=""))
+            lines = layout.criterion(
+                layout.ids[row.expectation.words], plain, Decimal(0), _MAX_COMMENT
+            )
             for line in lines:
                 yield f"# {line}" if line else ""
         if len(rows) > _MAX_VALUES:
@@ -491,7 +508,7 @@ def _with_ids(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
     numbers: dict[str, int] = {}  # the last that each name got
     for row in rows:
         name = words = (
-            re.sub(r"[\W_]+", "-", row.fact.words.lower()).strip("-")[:_MAX_ID].strip("-")
+            re.sub(r"[\W_]+", "-", row.expectation.words.lower()).strip("-")[:_MAX_ID].strip("-")
         )
         while name in rows_by_name:
             numbers[words] = numbers.get(words, 1) + 1
@@ -545,9 +562,9 @@ class _Layout(NamedTuple):
         self, name: str, row: _DraftCriterion, points: Decimal, width: int = _WIDTH
     ) -> Iterator[str]:
         """Yield the lines of a criterion."""
-        fact = row.fact
+        expectation = row.expectation
         yield ""
-        if fact.check == "frame_at" and "rpy" in fact.arguments:
+        if expectation.check == "frame_at" and "rpy" in expectation.arguments:
             yield (
                 "# The frame itself has to be rotated, as in the solution, and not only its shapes."
             )
@@ -555,21 +572,21 @@ class _Layout(NamedTuple):
         yield from ("[[criterion]]", assignment("id", name))
         if row.is_of_package and self.part == _ROBOT:
             yield assignment("part", _PACKAGE)
-        if fact.package:
-            yield assignment("package", fact.package)
-        if fact.about:
-            yield assignment("about", printable(fact.about))
+        if expectation.package:
+            yield assignment("package", expectation.package)
+        if expectation.about:
+            yield assignment("about", printable(expectation.about))
         if points != self.points:
             yield assignment("points", points)
         yield assignment("title", printable(row.title))
-        yield f"check = {toml_literal(fact.check)}"
-        if fact.args:
-            yield assignment("args", fact.args)
-        tables = [*self._carried(fact)]
+        yield f"check = {toml_literal(expectation.check)}"
+        if expectation.args:
+            yield assignment("args", expectation.args)
+        tables = [*self._carried(expectation)]
         is_line = len(tables) == 1 and len(assignment("carried", tables[0])) <= width
         if is_line:
             yield assignment("carried", tables[0])
-        yield from _with_lines("criterion", fact.arguments, width)
+        yield from _with_lines("criterion", expectation.arguments, width)
         for table in () if is_line else tables:
             yield from ("", "[[criterion.carried]]", *_toml_lines("from", table["from"]))
             yield from (
@@ -577,17 +594,23 @@ class _Layout(NamedTuple):
                 *_with_lines("criterion.carried", table["with"]),
             )
 
-    def _carried(self, fact: Fact) -> Iterator[Mapping[str, Any]]:
-        """Yield what counts instead of a fact, and after which mistakes.
+    def _carried(self, expectation: Expectation) -> Iterator[Mapping[str, Any]]:
+        """Yield what counts instead of an expectation, and after which mistakes.
 
-        Nothing if no criteria are about these.
+        It yields nothing if no criteria are about these.
         """
-        for carried_fact in fact.carried:
+        for carried_expectation in expectation.carried:
             causes = [
-                self.ids[words] for words in dict.fromkeys(carried_fact.causes) if words in self.ids
+                self.ids[words]
+                for words in dict.fromkeys(carried_expectation.causes)
+                if words in self.ids
             ]
             if causes:
-                yield {"from": causes, "check": carried_fact.check, "with": carried_fact.arguments}
+                yield {
+                    "from": causes,
+                    "check": carried_expectation.check,
+                    "with": carried_expectation.arguments,
+                }
 
 
 def _with_lines(table: str, arguments: Mapping[str, Any], width: int = _WIDTH) -> Iterator[str]:

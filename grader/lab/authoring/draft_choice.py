@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import texts_in
-from grader.lab.authoring.facts import Fact, Omission
+from grader.lab.authoring.expectations import Expectation, Omission
 from grader.lab.checks.check import LINK_ARGUMENTS
 from grader.ros.urdf.kinematics import Configuration
 from grader.workspace.rules.rule_table import FAMILIES
@@ -56,10 +56,10 @@ _ASKED = ("nodes", "not", "spawns", "active", *_OPENED)
 class DraftChoice(NamedTuple):
     """What a draft has criteria about.
 
-    The command line makes it; `draft` asks it of each fact.
+    The command line makes it; `draft` asks it of each expectation.
 
-    >>> fact = Fact("arm", "mass_is", {"link": "arm", "mass": 2.0}, "arm mass_is")
-    >>> DraftChoice(without=frozenset({"masses"})).takes(fact)
+    >>> expectation = Expectation("arm", "mass_is", {"link": "arm", "mass": 2.0}, "arm mass_is")
+    >>> DraftChoice(without=frozenset({"masses"})).takes(expectation)
     False
     """
 
@@ -69,53 +69,58 @@ class DraftChoice(NamedTuple):
     has_equal_weights: bool = False
     total: int | None = None  # points of all criteria
 
-    def takes(self, fact: Fact) -> bool:
-        """Return whether there is to be a criterion for a fact."""
-        if self.is_names_only and fact.check not in _OF_NAMES:
+    def takes(self, expectation: Expectation) -> bool:
+        """Return whether there is to be a criterion for an expectation."""
+        if self.is_names_only and expectation.check not in _OF_NAMES:
             return False
-        if fact.check == "names_agree":
-            return fact.arguments["of"] not in self.without
-        return not any(fact.check in _KINDS.get(word, ()) for word in self.without)
+        if expectation.check == "names_agree":
+            return expectation.arguments["of"] not in self.without
+        return not any(expectation.check in _KINDS.get(word, ()) for word in self.without)
 
-    def freed(self, fact: Fact, robot: Configuration | None) -> Fact | Omission | None:
-        """Return a fact that asks for none of the free names.
+    def freed(
+        self, expectation: Expectation, robot: Configuration | None
+    ) -> Expectation | Omission | None:
+        """Return an expectation that asks for none of the free names.
 
-        None if nothing is left of it, and what is omitted where no place in the tree names
-        a link.
+        It is None if nothing is left of it, and what is omitted where no place in the tree names a
+        link.
         """
         if not self.free:
-            return fact
-        names = _NAMED_BY.get(fact.check, ())
-        if any(self._is_free(fact.arguments.get(name)) for name in names):
+            return expectation
+        names = _NAMED_BY.get(expectation.check, ())
+        if any(self._is_free(expectation.arguments.get(name)) for name in names):
             return None
         selectors: dict[str, str] = {}
-        for link in self._free_links(fact, robot):
+        for link in self._free_links(expectation, robot):
             selector = _select_link(robot, link) if robot is not None else None
             if selector is None:
-                return Omission(fact.words, f"no place in the tree names the free link {link}")
+                return Omission(
+                    expectation.words, f"no place in the tree names the free link {link}"
+                )
             selectors[link] = selector
-        placed = self._without_names(_with_selectors(fact, selectors))
+        placed = self._without_names(_with_selectors(expectation, selectors))
         if placed is None:
             return None
         carried = [
-            one._replace(arguments=_by_selectors(one.arguments, selectors)) for one in fact.carried
+            one._replace(arguments=_by_selectors(one.arguments, selectors))
+            for one in expectation.carried
         ]
-        others = [_with_selectors(one, selectors) for one in fact.otherwise]
+        others = [_with_selectors(one, selectors) for one in expectation.otherwise]
         return placed._replace(carried=tuple(carried), otherwise=tuple(others))
 
-    def _free_links(self, fact: Fact, robot: Configuration | None) -> set[str]:
-        """Return the free links that the arguments of a fact, or what counts instead, name."""
+    def _free_links(self, expectation: Expectation, robot: Configuration | None) -> set[str]:
+        """Return the free links that an expectation, or what counts instead, names."""
         if robot is None:
             return set()
         named: set[str] = set()
-        for arguments in (fact.arguments, *(one.arguments for one in fact.carried)):
+        for arguments in (expectation.arguments, *(one.arguments for one in expectation.carried)):
             given = [value for key, value in arguments.items() if key in LINK_ARGUMENTS]
             named |= {name for name in texts_in(given) if robot.robot.has_link(name)}
         return named & self.free
 
-    def _without_names(self, fact: Fact) -> Fact | None:
-        """Return a fact without values that are free names; None if it asks for nothing else."""
-        arguments, title = dict(fact.arguments), fact.title
+    def _without_names(self, expectation: Expectation) -> Expectation | None:
+        """Return an expectation without free names as values; None if it asks for nothing else."""
+        arguments, title = dict(expectation.arguments), expectation.title
         for name in sorted(self.free) if "at" in arguments else ():
             title = title.replace(f" of {name!r}", "")
             for key in ("@name", "@reference", "joint/@name"):
@@ -126,11 +131,11 @@ class DraftChoice(NamedTuple):
                 if not arguments[key]:
                     del arguments[key]
         is_value_free = any(self._is_free(arguments.get(key)) for key in ("value", "has"))
-        asks = {"node_runs": _ASKED, "joints_named": ("joints",)}.get(fact.check)
+        asks = {"node_runs": _ASKED, "joints_named": ("joints",)}.get(expectation.check)
         is_empty = asks is not None and not any(key in arguments for key in asks)
         if is_value_free or is_empty:
             return None
-        return fact._replace(arguments=arguments, title=title)
+        return expectation._replace(arguments=arguments, title=title)
 
     def _kept(self, given: Any) -> Any:
         """Return the items of a list or table that name nothing free."""
@@ -165,12 +170,14 @@ def _select_link(robot: Configuration, link: str) -> str | None:
     return None
 
 
-def _with_selectors(fact: Fact, selectors: Mapping[str, str]) -> Fact:
-    """Return a fact with places in the tree for the names of links."""
-    title = fact.title
+def _with_selectors(expectation: Expectation, selectors: Mapping[str, str]) -> Expectation:
+    """Return an expectation with places in the tree for the names of links."""
+    title = expectation.title
     for link, selector in selectors.items():
         title = title.replace(repr(link), selector)
-    return fact._replace(arguments=_by_selectors(fact.arguments, selectors), title=title)
+    return expectation._replace(
+        arguments=_by_selectors(expectation.arguments, selectors), title=title
+    )
 
 
 def _by_selectors(arguments: Mapping[str, Any], selectors: Mapping[str, str]) -> Mapping[str, Any]:

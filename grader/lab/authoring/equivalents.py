@@ -1,4 +1,4 @@
-"""Equivalents of a reference: the same robot in another file, one of each family.
+"""Equivalents of a reference: the same robot in another file, one of each rewriting.
 
 Each must keep full marks.
 
@@ -48,7 +48,7 @@ class Equivalent(NamedTuple):
     It says how it was rewritten, and has the text with only its layout changed.
     """
 
-    family: str
+    rewriting: str
     text: str
     before: str
     is_xacro: bool
@@ -65,17 +65,17 @@ _Rewriting = Callable[[Element, RewritingRules], bool]  # returns whether it cha
 
 
 def equivalents(root: Element, rules: RewritingRules) -> Iterator[Equivalent]:
-    """Yield a rewriting of a robot of each family.
+    """Yield a robot as each rewriting leaves it.
 
-    Each changes all that the rules and the family allow.
+    Each changes all that the rules and the rewriting allow.
     """
     rules = rules._replace(named={*rules.named, *words_of_foreign(root)})
     before = write_tree(copied(root))
-    for family, rewriting in _REWRITINGS.items():
+    for rewriting, rewrite in _REWRITINGS.items():
         tree = copied(root)
-        if rewriting(tree, rules):
-            text = write_tree(tree, "\t" if family == _LAYOUT else "  ")
-            yield Equivalent(family, text, before, family in _AS_XACRO)
+        if rewrite(tree, rules):
+            text = write_tree(tree, "\t" if rewriting == _LAYOUT else "  ")
+            yield Equivalent(rewriting, text, before, rewriting in _AS_XACRO)
 
 
 def _reorder(tree: Element, _: RewritingRules) -> bool:
@@ -121,7 +121,7 @@ def _move_frames(tree: Element, rules: RewritingRules) -> bool:
 def _free_move(tree: Element, joint: Element, rules: RewritingRules) -> Transform | None:
     """Return a change of a child's frame that leaves the motion of the joint as it is.
 
-    None if there is none.
+    It is None if there is none.
 
     @root, @tip and @moved:2 name links by structure, whose frames are those that move, and those at
     the ends.

@@ -16,16 +16,16 @@ EVERY_NODE, _FLOW_STYLE = "parameters of /**", "flow style of YAML"
 
 
 def file_equivalents(submission: Submission) -> Iterator[tuple[str, Mapping[str, str]]]:
-    """Yield each family with the new texts of all files that it changes, by their paths."""
+    """Yield each rewriting with the new texts of all files that it changes, by their paths."""
     workspace = submission.workspace
     wide = {
         path: _for_every_node(workspace, path, tree) for path, tree in workspace.installed.trees
     }
     flow = {path: _in_flow_style(tree) for path, tree in workspace.installed.trees}
-    for family, texts in ((EVERY_NODE, wide), (_FLOW_STYLE, flow)):
+    for rewriting, texts in ((EVERY_NODE, wide), (_FLOW_STYLE, flow)):
         changed = {path: text for path, text in texts.items() if text is not None}
         if changed:
-            yield family, changed
+            yield rewriting, changed
 
 
 def _for_every_node(workspace: Workspace, path: str, tree: YamlNode) -> str | None:
@@ -51,7 +51,7 @@ def _for_every_node(workspace: Workspace, path: str, tree: YamlNode) -> str | No
 def _in_flow_style(tree: YamlNode) -> str | None:
     """Return a file as one mapping in braces.
 
-    None for texts that would mean something else there.
+    It is None for texts that would mean something else there.
     """
     text = _flow(tree)
     with suppress(ValueError):

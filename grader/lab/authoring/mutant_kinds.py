@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from grader.lab.authoring.mutants import Mutant
 
-# The kinds, by how the families of their mutants begin; the first that fits counts.
+# The kinds, by how their mutations begin; the first that fits counts.
 _KINDS = {
     "numbers": ("number", "value type changed"),
     "code": (
@@ -49,14 +49,14 @@ class KindScore(NamedTuple):
     graded: int
 
 
-def find_kind(family: str) -> str:
-    """Return the kind of a family of mutants.
+def find_kind(mutation: str) -> str:
+    """Return the kind of a mutation.
 
     >>> find_kind("number x10")
     'numbers'
     """
     for kind, starts in _KINDS.items():
-        if family.startswith(starts):
+        if mutation.startswith(starts):
             return kind
     return _OTHER
 
@@ -64,15 +64,15 @@ def find_kind(family: str) -> str:
 def draw(mutants: Sequence[Mutant], most: int, seed: int) -> list[Mutant]:
     """Return at most so many mutants, in their order.
 
-    Of each family as many, as far as there are so many, drawn by the seed.
+    Each mutation has as many, as far as there are so many, and the seed draws them.
     """
     if len(mutants) <= most:
         return [*mutants]
-    families: dict[str, list[Mutant]] = {}
+    mutations: dict[str, list[Mutant]] = {}
     for mutant in mutants:
-        families.setdefault(mutant.family, []).append(mutant)
+        mutations.setdefault(mutant.mutation, []).append(mutant)
     random = Random(seed)
-    shuffled = [random.sample(places, len(places)) for places in families.values()]
+    shuffled = [random.sample(places, len(places)) for places in mutations.values()]
     in_turn = chain.from_iterable(zip_longest(*shuffled))
     drawn = [mutant for mutant in in_turn if mutant is not None][:most]
     chosen = set(drawn)
@@ -82,13 +82,13 @@ def draw(mutants: Sequence[Mutant], most: int, seed: int) -> list[Mutant]:
 def scores_by_kind(outcomes: Iterable[tuple[str, str]]) -> list[KindScore]:
     """Return the score of each kind.
 
-    `outcomes` are the families of mutants with what became of them: caught, survived, or what
+    `outcomes` are the mutations of mutants with what became of them: caught, survived, or what
     counts for neither.
     """
     caught, counts = Counter[str](), Counter[str]()
-    for family, fate in outcomes:
+    for mutation, fate in outcomes:
         if fate in ("caught", "survived"):
-            kind = find_kind(family)
+            kind = find_kind(mutation)
             counts[kind] += 1
             caught[kind] += fate == "caught"
     order = [*_KINDS, _OTHER]
@@ -98,14 +98,14 @@ def scores_by_kind(outcomes: Iterable[tuple[str, str]]) -> list[KindScore]:
 def why_right(mutant: Mutant) -> str:
     """Return why ROS 2 does the same with a mutant that survives; empty where nothing says so."""
     place = mutant.id.partition(": ")[2]
-    if mutant.family == "file renamed" and ".launch." in mutant.path:
+    if mutant.mutation == "file renamed" and ".launch." in mutant.path:
         return "ROS 2 starts a launch file of any name"
-    if mutant.family in ("name misspelt", "name exchanged"):
+    if mutant.mutation in ("name misspelt", "name exchanged"):
         match = _FREE_NAMES.search(place.partition(" -> ")[0])
         if match is not None:
             return f"nothing refers to the name of <{match[1]}>"
-    if mutant.family == "attribute deleted" and _FREE_OF_ROBOT.match(place):
+    if mutant.mutation == "attribute deleted" and _FREE_OF_ROBOT.match(place):
         return "ROS 2 reads no <transmission> outside of <ros2_control>"
-    if mutant.family == "string misspelt" and place.endswith((" output", " screen", " log")):
+    if mutant.mutation == "string misspelt" and place.endswith((" output", " screen", " log")):
         return "it says only where a node prints"
     return ""

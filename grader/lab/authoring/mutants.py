@@ -1,6 +1,6 @@
 """Mutants of a reference: one file with one mistake.
 
-There is one for every single edit that a family of mistakes allows.
+There is one for every single edit that a mutation allows.
 
 Those of a URDF or xacro text come first; then those of a package: a file deleted or renamed, and
 mistakes in package.xml, setup.py, launch files and RViz files.
@@ -32,9 +32,9 @@ _BOX = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
 class Mutant(NamedTuple):
     """One file of a solution with one mistake."""
 
-    # stable: the family and the place by names, `number x10: joint base_lidar_joint/origin xyz.z`
+    # stable: the mutation and the place by names, `number x10: joint base_lidar_joint/origin xyz.z`
     id: str
-    family: str
+    mutation: str
     path: str
     line: int
     start: int = 0  # from here to `end`, the text becomes `new`
@@ -51,10 +51,10 @@ class Mutant(NamedTuple):
 class MutantEdit(NamedTuple):
     """A change of a text between two offsets.
 
-    It has its family, and its place by names, with what tells it from others.
+    It has its mutation, and its place by names, with what tells it from others.
     """
 
-    family: str
+    mutation: str
     label: str
     start: int
     end: int
@@ -73,14 +73,14 @@ def _as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator
     """Yield the mutants that changes of a file make, each once and with an id of its own."""
     seen: set[tuple[int, int, str]] = set()
     ids: Counter[str] = Counter()
-    for family, label, start, end, new in changes:
+    for mutation, label, start, end, new in changes:
         if (start, end, new) in seen or text[start:end] == new:
             continue
         seen.add((start, end, new))
-        name = f"{family}: {label}"
+        name = f"{mutation}: {label}"
         ids[name] += 1
         name += f" ({ids[name]})" if ids[name] > 1 else ""
-        yield Mutant(name, family, path, text.count("\n", 0, start) + 1, start, end, new)
+        yield Mutant(name, mutation, path, text.count("\n", 0, start) + 1, start, end, new)
 
 
 def _names_by_tag(elements: Iterable[Element]) -> dict[str, list[str]]:
@@ -180,9 +180,9 @@ def _value_changes(text: str, label: str, span: tuple[int, int], name: str) -> I
     label = f"{label} {name}".rstrip()
     pieces = list(_NUMBER.finditer(text, start, end))
     for part, match in zip(_parts(name, len(pieces)), pieces, strict=True):
-        for family, number in _alternatives(float(match[0])):
+        for mutation, number in _alternatives(float(match[0])):
             if number != float(match[0]):
-                yield MutantEdit(family, f"{label}{part}", *match.span(), f"{number:.6g}")
+                yield MutantEdit(mutation, f"{label}{part}", *match.span(), f"{number:.6g}")
     value = text[start:end].strip()
     if not pieces and value:
         start = text.index(value, start)
@@ -227,7 +227,7 @@ _FOR_PEOPLE = re.compile(
     "(long_)?description|(author|maintainer)(_email)?|(install|tests)_requires?|classifiers|exclude|keywords|license|url"
     "|version|zip_safe"
 )
-_XML_FAMILIES = ("element deleted", "text misspelt", "name misspelt")
+_XML_MUTATIONS = ("element deleted", "text misspelt", "name misspelt")
 _READ_OF_MANIFEST = re.compile(r"(name|export/build_type)\b")
 _DISPLAY_TEXTS = (("Class",), ("Description Topic", "Value"), ("Topic", "Value"))
 MAX_LABEL = 70
@@ -276,9 +276,11 @@ def _file_changes(source: Source, label: str, file: str) -> Iterator[MutantEdit]
         return
     for mutant in mutants(source.text):
         place = mutant.id.partition(": ")[2]
-        if mutant.family in _XML_FAMILIES and (file != MANIFEST or _READ_OF_MANIFEST.match(place)):
+        if mutant.mutation in _XML_MUTATIONS and (
+            file != MANIFEST or _READ_OF_MANIFEST.match(place)
+        ):
             yield MutantEdit(
-                mutant.family, f"{label} {place}", mutant.start, mutant.end, mutant.new
+                mutant.mutation, f"{label} {place}", mutant.start, mutant.end, mutant.new
             )
 
 
@@ -315,15 +317,15 @@ def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator
 
     An entry of data_files, an action or an import is deleted, a string is misspelt.
     """
-    family = "data_files entry deleted" if is_setup else "action removed"
+    mutation = "data_files entry deleted" if is_setup else "action removed"
     for item in _entries(file):
         start, end = file.span(item)
         comma = _COMMA.match(file.text, end)
         end = comma.end() if comma else end
-        yield MutantEdit(family, f"{label} {_short(file, item)}", start, end, "")
+        yield MutantEdit(mutation, f"{label} {_short(file, item)}", start, end, "")
     for call in file.calls("add_action"):
         action = call.args[0] if call.args else call
-        yield MutantEdit(family, f"{label} {_short(file, action)}", *file.span(call), "None")
+        yield MutantEdit(mutation, f"{label} {_short(file, action)}", *file.span(call), "None")
     if is_setup:
         for node in file.imports:
             place = f"{label} {file.segment(node)}"

@@ -24,7 +24,7 @@ _DEPENDENCY = re.compile(
 )
 _WORLDS = (".sdf", ".world")
 _OF_WORLDS = ("plugin", "sensor", "topic")
-_WORLD_FAMILIES = ("element deleted", "text misspelt", "attribute deleted")
+_WORLD_MUTATIONS = ("element deleted", "text misspelt", "attribute deleted")
 _DIRECTIONS = {"GZ_TO_ROS": "ROS_TO_GZ", "ROS_TO_GZ": "GZ_TO_ROS"}
 _REVERSED = {"true": "false", "false": "true", "True": "False", "False": "True"}
 
@@ -47,7 +47,7 @@ def name_changes(
 ) -> Iterator[MutantEdit]:
     """Yield the changes of a file of a package.
 
-    First those of its format, then the names in it that are compared.
+    Those of its format come first, then those of the names in it that are compared.
     """
     name = source.path.rpartition("/")[2]
     if name == CMAKE:
@@ -73,8 +73,10 @@ def _name_edits(
     for fact, edit in names:
         if edit.path == source.path:
             start = source.start_offset(edit)
-            family = "name misspelt" if isinstance(fact, Use) else "definition renamed"
-            yield MutantEdit(family, f"{label} {edit.old}", start, start + len(edit.old), edit.new)
+            mutation = "name misspelt" if isinstance(fact, Use) else "definition renamed"
+            yield MutantEdit(
+                mutation, f"{label} {edit.old}", start, start + len(edit.old), edit.new
+            )
 
 
 def _world_changes(source: Source, label: str) -> Iterator[MutantEdit]:
@@ -82,9 +84,9 @@ def _world_changes(source: Source, label: str) -> Iterator[MutantEdit]:
     for mutant in mutants(source.text):
         place = mutant.id.partition(": ")[2]
         element = place.rpartition("/")[2].partition(" ")[0]
-        if element in _OF_WORLDS and mutant.family in _WORLD_FAMILIES:
-            family = f"world {mutant.family}"
-            yield MutantEdit(family, f"{label} {place}", mutant.start, mutant.end, mutant.new)
+        if element in _OF_WORLDS and mutant.mutation in _WORLD_MUTATIONS:
+            mutation = f"world {mutant.mutation}"
+            yield MutantEdit(mutation, f"{label} {place}", mutant.start, mutant.end, mutant.new)
 
 
 def _bridge_changes(source: Source, label: str, root: YamlNode) -> Iterator[MutantEdit]:

@@ -15,7 +15,7 @@ from grader.base.errors import InputError, NotDecided
 from grader.base.source import Source
 from grader.lab.authoring.package_equivalents import (
     Files,
-    as_family,
+    as_rewriting,
     python_launches,
     read_text,
 )
@@ -71,14 +71,14 @@ class _NodeCall(NamedTuple):
 
 
 def node_equivalents(submission: Submission, named: Collection[str]) -> Iterator[tuple[str, Files]]:
-    """Yield each family with the files that it changes; `named` are the texts of the rubric."""
+    """Yield each rewriting with the files that it changes; `named` are the texts of the rubric."""
     calls: list[_NodeCall] = []
     for package in submission.lab_packages.values():
         calls += _node_calls(submission, package)
-    yield from as_family(_IN_LAUNCH, (_with_tables(submission, calls),))
-    yield from as_family(_IN_FILE, (_with_file(submission, calls),))
-    yield from as_family(_REMAPPED, (_with_remappings(submission, calls),))
-    yield from as_family(_IN_ONE_PROGRAM, (_in_one_program(submission, calls, named),))
+    yield from as_rewriting(_IN_LAUNCH, (_with_tables(submission, calls),))
+    yield from as_rewriting(_IN_FILE, (_with_file(submission, calls),))
+    yield from as_rewriting(_REMAPPED, (_with_remappings(submission, calls),))
+    yield from as_rewriting(_IN_ONE_PROGRAM, (_in_one_program(submission, calls, named),))
 
 
 def _node_calls(submission: Submission, package: Package) -> Iterator[_NodeCall]:

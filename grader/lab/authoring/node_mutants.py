@@ -86,10 +86,10 @@ def _cpp_changes(source: Source, label: str) -> Iterator[MutantEdit]:
     rclcpp is not initialised, nothing spins, a parameter is not declared, or a callback returns
     too early.
     """
-    for family, pattern in _CPP_STATEMENTS.items():
+    for mutation, pattern in _CPP_STATEMENTS.items():
         for match in pattern.finditer(source.text):
             place = f"{label} {' '.join(match[0].split())[:MAX_LABEL]}"
-            yield MutantEdit(family, place, *match.span(), "")
+            yield MutantEdit(mutation, place, *match.span(), "")
 
 
 def _interface_changes(source: Source, label: str) -> Iterator[MutantEdit]:
@@ -178,9 +178,9 @@ def _parameter_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
             name = getattr(callback, "attr", getattr(callback, "id", ""))
             if name in functions:
                 places = _parameter_places(file, functions[name], is_method=is_method)
-                for family, start, end, new in places:
+                for mutation, start, end, new in places:
                     if called != "create_subscription" or not new:
-                        yield MutantEdit(family, f"{label} {name}", start, end, new)
+                        yield MutantEdit(mutation, f"{label} {name}", start, end, new)
 
 
 def _parameter_places(
@@ -211,9 +211,9 @@ def _instance_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
                 name = called.id if isinstance(called, ast.Name) else ""
                 kind = name if isinstance(given, ast.Call) else made.get(name, "")
                 if kind[:1].isupper():
-                    family = "message" if method == "publish" else "spin"
+                    mutation = "message" if method == "publish" else "spin"
                     place = f"{label} {file.segment(node)[:MAX_LABEL]}"
-                    yield MutantEdit(f"{family} of a class", place, *file.span(given), kind)
+                    yield MutantEdit(f"{mutation} of a class", place, *file.span(given), kind)
 
 
 def _order_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
@@ -247,10 +247,10 @@ def _call_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
                 yield MutantEdit("call awaited", place, end - len("call_async"), end, "call")
 
 
-def _removed(file: PythonFile, label: str, family: str, node: ast.Expr) -> MutantEdit:
+def _removed(file: PythonFile, label: str, mutation: str, node: ast.Expr) -> MutantEdit:
     """Return that a statement is missing."""
     place = f"{label} {file.segment(node)[:MAX_LABEL]}"
-    return MutantEdit(family, place, *file.span(node), "pass")
+    return MutantEdit(mutation, place, *file.span(node), "pass")
 
 
 def _requalified(

@@ -51,32 +51,36 @@ ament_package()
 def package_equivalents(
     submission: Submission, named: Collection[str], robot_files: Sequence[str]
 ) -> Iterator[tuple[str, Files]]:
-    """Yield each family with the files that it changes; `named` are the texts of the rubric."""
+    """Yield each rewriting with the files that it changes; `named` are the texts of the rubric."""
     packages = [*submission.lab_packages.values()]
     for language, ending in _ENDING_BY_LANGUAGE.items():
-        yield from as_family(
+        yield from as_rewriting(
             language, (_in_other_language(submission, package, ending) for package in packages)
         )
-    yield from as_family(
+    yield from as_rewriting(
         BUILT_BY_CMAKE, (_built_by_cmake(submission, package) for package in packages)
     )
-    yield from as_family(_UNNAMED, (_without_names(submission, package) for package in packages))
-    yield from as_family(
+    yield from as_rewriting(_UNNAMED, (_without_names(submission, package) for package in packages))
+    yield from as_rewriting(
         _LATER, (_with_later_spawners(submission, package) for package in packages)
     )
-    yield from as_family(
+    yield from as_rewriting(
         _RENAMED, (_with_renamed_files(submission, package, named) for package in packages)
     )
-    yield from as_family(_SYSTEM_RENAMED, (_with_renamed_system(submission, named, robot_files),))
+    yield from as_rewriting(
+        _SYSTEM_RENAMED, (_with_renamed_system(submission, named, robot_files),)
+    )
 
 
-def as_family(family: str, changes: Iterator[Files] | tuple[Files]) -> Iterator[tuple[str, Files]]:
-    """Yield a family with all its changes, if there are some."""
+def as_rewriting(
+    rewriting: str, changes: Iterator[Files] | tuple[Files]
+) -> Iterator[tuple[str, Files]]:
+    """Yield a rewriting with all its changes, if there are some."""
     files: dict[str, str | None] = {}
     for change in changes:
         files.update(change)
     if files:
-        yield family, files
+        yield rewriting, files
 
 
 def read_text(submission: Submission, path: str) -> str:
@@ -90,8 +94,8 @@ def read_text(submission: Submission, path: str) -> str:
 def _in_other_language(submission: Submission, package: Package, ending: str) -> Files:
     """Return the one launch file of a package in another language.
 
-    And the build file that installs it. Nothing where not all of it is known, or where another
-    file names it.
+    The build file that installs it is there, too. There is none where not all of it is known, or
+    where another file names it.
     """
     paths = [path for path in package.launch_files if not path.startswith("test/")]
     before = _language_ending(paths[0]) if len(paths) == 1 else ""
@@ -178,7 +182,7 @@ def _node_table(node: StartedNode) -> dict[str, Any] | None:
 def _parameter_rows(node: StartedNode) -> list[dict[str, Any]] | None:
     """Return the parameters of a node as rows of a launch file.
 
-    None where not all of them are plain.
+    It is None where not all of them are plain.
     """
     rows: list[dict[str, Any]] = []
     for given in node.parameters or ():
@@ -275,7 +279,7 @@ def _in_python(word: str) -> str:
 def _built_by_cmake(submission: Submission, package: Package) -> Files:
     """Return the files of a package that CMake builds in place of setup.py.
 
-    Nothing where it has programs or modules, or is no package of Python.
+    There are none where it has programs or modules, or is no package of Python.
     """
     setup = package.path(SETUP)
     manifest = package.manifest
@@ -412,7 +416,7 @@ def _replace_name(
 def _with_renamed_files(submission: Submission, package: Package, named: Collection[str]) -> Files:
     """Return the files of parameters and worlds under other names.
 
-    And all files that name them.
+    All files that name them are among these.
     """
     files: dict[str, str | None] = {}
     texts: dict[str, str] = {}

@@ -64,7 +64,7 @@ class _Failures(NamedTuple):
 def reference_failures(rubric: Rubric) -> _Failures:
     """Return what the reference does not pass.
 
-    Of the automatic criteria, and of the checks in `carried` tables.
+    These are automatic criteria, and checks in `carried` tables.
 
     Criteria with one message share a line.
     """
@@ -304,7 +304,7 @@ def _other_angles(key: str, unit: str, values: list[float]) -> Iterator[str]:
 def _is_like_radians(value: float) -> bool:
     """Return whether a number is a multiple of 45 degrees in radians.
 
-    With more decimals of 15, of 1.
+    With more decimals than two, multiples of 15 degrees count, with more than three of 1.
     """
     digits = len(f"{value:.10g}".partition(".")[2])
     step = radians({2: 45, 3: 15}.get(digits, 1))

@@ -316,19 +316,19 @@ class Trial:
         names, reference = set(_names_in(self.rubric)), self.reference.renewed()
         rewritten = package_equivalents(reference, names, self.robot_files)
         of_nodes = node_equivalents(reference, names)
-        for family, texts in chain(file_equivalents(reference), rewritten, of_nodes):
-            yield self._file_equivalent(family, texts)
+        for rewriting, texts in chain(file_equivalents(reference), rewritten, of_nodes):
+            yield self._file_equivalent(rewriting, texts)
 
-    def _file_equivalent(self, family: str, texts: Mapping[str, str | None]) -> Loss:
+    def _file_equivalent(self, rewriting: str, texts: Mapping[str, str | None]) -> Loss:
         """Return what other texts of files lose; None for a file that is not there any more."""
-        names = [one.id for one in self.tested if not _is_of_writing(one, family)]
+        names = [one.id for one in self.tested if not _is_of_writing(one, rewriting)]
         files: dict[str, bytes | None] = {}
         diffs = []
         for path, text in texts.items():
             files[path] = None if text is None else text.encode("utf-8", "surrogateescape")
             diffs.append(_text_diff(path, self.text(path), text or ""))
         changed = with_files(self.reference, files)
-        return Loss(family, self._lost(changed, names), "\n".join(diffs))
+        return Loss(rewriting, self._lost(changed, names), "\n".join(diffs))
 
     def _robot_equivalents(self, urdf: Read) -> Iterator[Loss]:
         root = urdf.reading.root
@@ -338,13 +338,13 @@ class Trial:
             name.startswith("@") and not name.startswith(JOINT_OF)
             for name in _names_in(self.rubric)
         )
-        for rewriting in equivalents(root, RewritingRules(self.kept, has_places)):
-            submission = _rewritten(self.reference, urdf, rewriting)
-            lost = self._lost(submission, self._must_pass(submission, rewriting.family))
+        for equivalent in equivalents(root, RewritingRules(self.kept, has_places)):
+            submission = _rewritten(self.reference, urdf, equivalent)
+            lost = self._lost(submission, self._must_pass(submission, equivalent.rewriting))
             diff = ""
             if lost:
-                diff = _text_diff(self.robot_files[0], rewriting.before, rewriting.text)
-            yield Loss(rewriting.family, lost, diff)
+                diff = _text_diff(self.robot_files[0], equivalent.before, equivalent.text)
+            yield Loss(equivalent.rewriting, lost, diff)
 
     def _lost(self, submission: Submission, names: Collection[str]) -> Mapping[str, str]:
         """Return the criteria that lose points, with their messages."""
@@ -355,17 +355,17 @@ class Trial:
             if self.is_lost(result)
         }
 
-    def _must_pass(self, submission: Submission, family: str) -> Collection[str]:
+    def _must_pass(self, submission: Submission, rewriting: str) -> Collection[str]:
         """Return the criteria on the robot that must still pass.
 
-        For a URDF on its own, those that need no package.
+        For a URDF on its own, these are those that need no package.
         """
         others = ("package", "submission") if submission.is_single else ("package",)
         return [
             criterion.id
             for criterion in self.tested
             if criterion.check.subject not in others
-            and family not in criterion.check.about.breaks_under(criterion.arguments)
+            and rewriting not in criterion.check.about.breaks_under(criterion.arguments)
         ]
 
 
@@ -378,14 +378,16 @@ def _messages(results: Iterable[Result], status: str) -> dict[str, str]:
     }
 
 
-def _is_of_writing(criterion: Criterion, family: str) -> bool:
-    """Return whether a criterion asks for what a family of equivalents of files changes."""
+def _is_of_writing(criterion: Criterion, rewriting: str) -> bool:
+    """Return whether a criterion asks for what a rewriting of files changes."""
     check, arguments = criterion.check.name, criterion.arguments
     if check == "entry_is":
         # A path names one of several nodes, or an entry of a file that is written anew.
-        return family == EVERY_NODE or "file" in arguments
+        return rewriting == EVERY_NODE or "file" in arguments
     return (
-        family == BUILT_BY_CMAKE and check == "package_type" and bool(arguments.get("build_type"))
+        rewriting == BUILT_BY_CMAKE
+        and check == "package_type"
+        and bool(arguments.get("build_type"))
     )
 
 
@@ -465,7 +467,7 @@ class RubricTest(NamedTuple):
     faults: tuple[Loss, ...]  # mutants on which a check is faulty
     # mutants that lose nothing but what takes more work than one submission may use
     over_budget: tuple[Loss, ...]
-    equivalents: tuple[str, ...]  # the families that were tried
+    equivalents: tuple[str, ...]  # the rewritings that were tried
     losses: tuple[Loss, ...]  # equivalents that lose points
     samples: SampleResults | None = None  # None where no folder was given
     kinds: tuple[KindScore, ...] = ()  # without mutants that are ignored or right
@@ -487,7 +489,7 @@ class RubricTest(NamedTuple):
     def lost(self) -> tuple[str, ...]:
         """The criteria that the reference does not pass.
 
-        Without extra credit and those for manual grading.
+        Extra credit and criteria for manual grading are not among them.
         """
         return tuple(result.criterion.id for result in self.reference.unearned)
 
@@ -535,7 +537,9 @@ def run_rubric_test(
             outcomes.append(outcome)
             # Those of a group arrive at once: after the first of them, no time left is true.
             if len(outcomes) % GROUP == 0:
-                scores = scores_by_kind((graded.mutant.family, graded.fate) for graded in outcomes)
+                scores = scores_by_kind(
+                    (graded.mutant.mutation, graded.fate) for graded in outcomes
+                )
                 progress(len(samples or ()) + len(outcomes), total, scores)
         rest = _Rest([*trial.equivalents()], *trial.unexamined())
     except KeyboardInterrupt:
@@ -577,10 +581,10 @@ def _counted(
         mutant = outcome.mutant
         failed.update(outcome.failed)
         if outcome.fate == "caught":
-            scored.append((mutant.family, "caught"))
+            scored.append((mutant.mutation, "caught"))
         if outcome.fate == "survived":
             survivor = _survivor(trial, mutant)
-            scored.append((mutant.family, "ignored" if survivor.reason else "survived"))
+            scored.append((mutant.mutation, "ignored" if survivor.reason else "survived"))
             if survivor.reason:
                 ignored.append(survivor)
             else:

@@ -163,7 +163,7 @@ def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
 def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bool) -> None:
     """Put an empty link into a joint, at `first` in the parent's frame.
 
-    `is_first` if the upper half keeps the name.
+    With `is_first`, the upper half keeps the name.
     """
     middle, parent, child = fresh(tree, "link"), end(joint, "parent"), end(joint, "child")
     etree.SubElement(tree, "link", {"name": middle})

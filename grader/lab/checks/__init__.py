@@ -2,6 +2,6 @@
 
 A check knows no points and no lab: names, frames and numbers come from the rubric.
 
-It imports the readers and `submission`. Begin with `check.py` and `registry.py`, then any family,
-such as `placement.py`.
+It imports the readers and `submission`. Begin with `check.py` and `registry.py`, then any module
+of checks, such as `placement.py`.
 """

@@ -256,7 +256,7 @@ def _visuals_of_kind(
 def _edges_along_link(visual: Visual, box: Box) -> Vector | None:
     """Return the edge lengths of a box along its link's axes, in metres.
 
-    None where they are not along them.
+    It is None where they are not along them.
     """
     size = box.size
     rotation = rotation_from_rpy(visual.origin.rpy)

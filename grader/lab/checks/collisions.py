@@ -196,7 +196,7 @@ def _fits(off: ShapeDifference | None, tolerance: float) -> bool:
 def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> ShapeDifference | None:
     """Return how far two shapes differ.
 
-    None for shapes of different kinds, and for different meshes.
+    It is None for shapes of different kinds, and for different meshes.
     """
     shown = PlacedShape(visual.geometry, visual.origin.placed_in())
     solid = PlacedShape(collision.geometry, collision.origin.placed_in())

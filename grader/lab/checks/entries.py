@@ -172,7 +172,7 @@ class _Wanted(NamedTuple):
     def identity(self) -> str:
         """The key of the attribute that identifies one of several elements.
 
-        Empty if the values have none.
+        It is empty if the values have none.
         """
         return next((key for key in _IDENTIFYING if isinstance(self.values.get(key), str)), "")
 
@@ -187,7 +187,7 @@ class _Wanted(NamedTuple):
     def has_own(self, entries: Sequence[TreeEntry]) -> bool:
         """Return whether the entries at the path have the value themselves.
 
-        Or whether several of them have the values.
+        It is enough that several of them have the values together.
         """
         if self.value is not None and not self._have(entries, self.value):
             return False
@@ -241,7 +241,7 @@ class _Wanted(NamedTuple):
     def _have(self, entries: Sequence[TreeEntry], expected: Content) -> bool:
         """Return whether an entry is a value.
 
-        For a list, whether one is the list, or several have its items.
+        For a list, return whether one is the list, or several have its items.
         """
         if not isinstance(expected, list):
             return self._has_any(entries, [expected])

@@ -1,6 +1,6 @@
 """What a build of a package installs of its files, and why it does not.
 
-For the checks of packages and of launch files.
+The checks of packages and of launch files use it.
 """
 
 import posixpath
@@ -63,7 +63,7 @@ def build_error(package: Package, *, where_there: bool = False) -> Outcome | Non
 def files_of_kind(package: Package, kind: FileKind, name: str) -> Sequence[str]:
     """Return the file of a package that has this name.
 
-    Without one, all of the kind that are no part of another one.
+    Without one, return all of the kind that are no part of another one.
     """
     if kind == "launch":
         chosen = package.launch_file(name)

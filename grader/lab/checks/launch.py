@@ -234,7 +234,7 @@ def _stop_at_files(
 ) -> Outcome | None:
     """Return the failure of a launch file that stops at a file that it reads.
 
-    None if it does not.
+    It is None if it does not.
     """
     if built and (
         wrong := [place for place in places if place.state == "wrong" and place.stops_launch]

@@ -55,7 +55,7 @@ def _fail_loading(urdf: Reading, problems: list[Problem]) -> Outcome:
 def _list_assumed(urdf: Reading) -> str:
     """Return what is assumed about a file that ROS 2 rejects, each with its lines.
 
-    Empty if nothing is.
+    It is empty if nothing is.
     """
     lines: dict[str, list[str]] = {}
     for problem in urdf.problems:

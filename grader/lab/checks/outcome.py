@@ -231,7 +231,7 @@ def measured_turn(
 def _off_along(axis: int, off: float, frame: str) -> str:
     """Return how far a coordinate is off.
 
-    In the frame of a base by where that is, else by its sign.
+    In the frame of a base, words say where that is, else its sign does.
     """
     if not frame.startswith(_BASE):
         return f"{'xyz'[axis]} {difference(off)}"
@@ -241,7 +241,7 @@ def _off_along(axis: int, off: float, frame: str) -> str:
 def how_far_off(outcome: Outcome) -> float | None:
     """Return by how many metres a length or a point is off that fails.
 
-    None if it fails for another reason.
+    It is None if it fails for another reason.
     """
     if outcome.status != "failed" or outcome.unit != "m":
         return None
@@ -259,7 +259,7 @@ def how_far_off(outcome: Outcome) -> float | None:
 def other_unit(actual: Sequence[float], expected: Sequence[float]) -> str:
     """Return that lengths seem to be in millimetres or centimetres.
 
-    Empty unless all are too large by that factor.
+    It is empty unless all are too large by that factor.
     """
     pairs = [
         (a, b) for a, b in zip(actual, expected, strict=True) if abs(a) > SLACK or abs(b) > SLACK

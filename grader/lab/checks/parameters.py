@@ -149,7 +149,7 @@ def _written_otherwise(
 ) -> ParameterValue | None:
     """Return what parameter files have for a parameter, of whatever node.
 
-    Only if none of them has a certain value.
+    It is None if one of them has the value, or none has a value that is known.
     """
     written = submission.workspace.installed.written_values(parameter)
     known = [
@@ -299,7 +299,7 @@ def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[]
 def _place(robot: Configuration, link: str, relative_to: str) -> Vector:
     """Return the centre of a cylinder or sphere that a joint turns without end.
 
-    For another link, where its frame is.
+    For another link, return where its frame is.
     """
     joint = robot.parent_joints.get(link)
     if joint is not None and joint.type == "continuous" and robot.robot.link(link).visuals:

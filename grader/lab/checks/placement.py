@@ -124,7 +124,7 @@ def _with_orientation(
 def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome | None:
     """Return the failure of a link that moves in another link's frame.
 
-    None where only fixed joints lie between.
+    It is None where only fixed joints lie between.
     """
     path = robot.between(relative_to, link)
     loose = next((joint for joint in path if joint.type != "fixed"), None)

@@ -127,7 +127,7 @@ def _pair_joints(
 ) -> list[tuple[Joint, Joint]] | Outcome:
     """Return the joints of the robot that move links, each with that of the reference.
 
-    Or the failure to pair them.
+    If they do not pair, return the failure.
     """
     own_movers = _find_movers(robot, bases[0], [link for link, _ in pairs])
     others = _find_movers(reference, bases[1], [link for _, link in pairs])
@@ -290,7 +290,7 @@ class _MotionComparison(NamedTuple):
     def _times(self, offset: _Offset) -> float:
         """Return how far an offset exceeds the tolerances, rounded, so that equal ones are equal.
 
-        Infinite for NaN.
+        It is infinite for NaN.
         """
         shares = (
             offset.distance / max(self.tolerance, _LEAST),
@@ -367,7 +367,7 @@ def _find_leader(robot: Robot, joint: Joint) -> Joint | None:
 def _single_positions(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[float, ...]]]:
     """Yield positions with one joint at an end of its range, or between, and the others at 0.
 
-    Each with its index.
+    Each comes with its index.
     """
     for index, joint in enumerate(joints):
         low, high = _joint_range(joint)

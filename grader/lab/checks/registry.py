@@ -138,7 +138,7 @@ def find_check(name: str) -> Check | None:
 def usable_check(name: str) -> Check | None:
     """Return the check of this name.
 
-    None for one that cannot be used: a rubric that names it is refused.
+    It is None for one that cannot be used: a rubric that names it is refused.
     """
     try:
         return find_check(name)

@@ -356,7 +356,7 @@ class _Names(NamedTuple):
     def unheard(self) -> str:
         """Why transforms do not get from the joints to RViz.
 
-        Empty if they do, or if this is not known.
+        It is empty if they do, or if this is not known.
         """
         if self._unheard is None:
             return ""

@@ -64,7 +64,7 @@ class Wanted(NamedTuple):
 class Fault(NamedTuple):
     """What is not as a rubric asks.
 
-    If it is not `is_certain`, what may not be so, after "whether".
+    If it is not `is_certain`, it says what may not be so, after "whether".
     """
 
     message: str

@@ -261,7 +261,7 @@ def _is_of_frame(robot: Configuration, joint: Joint, links: Collection[str]) -> 
 def _driven_or_blocked(joint: Joint, link: str) -> Outcome | None:
     """Return the failure of a joint that another one moves, or that has no velocity.
 
-    None if it moves by itself.
+    It is None if it moves by itself.
     """
     if joint.mimic is not None:
         leader = "itself" if joint.mimic.joint == joint.name else "another joint"

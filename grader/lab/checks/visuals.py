@@ -35,7 +35,8 @@ def visible(robot: Configuration, link: str) -> list[Visual]:
 def hiding_link(robot: Configuration, link: str) -> str:
     """Return a link one opaque visual of which is around all that another link shows.
 
-    Empty if there is none, or nothing to hide. Raises MissingElement where a pose is not defined.
+    It is empty if there is none, or nothing to hide. Raises MissingElement where a pose is not
+    defined.
     """
     hidden = [placed(robot, link, visual, link) for visual in visible(robot, link)]
     for other in robot.robot.links if hidden else ():

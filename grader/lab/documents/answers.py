@@ -98,7 +98,7 @@ class _AnswerMatch(NamedTuple):
 def _read_ordinal(place: str) -> _Ordinal | None:
     """Return the place among all questions that "required question 1 of 2" names.
 
-    None for other texts.
+    It is None for other texts.
     """
     match = _ORDINAL.fullmatch(place.lower())
     if match:
@@ -111,10 +111,10 @@ def _match_answer(
 ) -> _AnswerMatch | None:
     """Return which of the answers in one document belongs to a question of a task.
 
-    None if there is none for it.
+    It is None if there is none for it.
 
-    In this order: the only one below the heading of the task; the one with its number; the one at
-    its place, if there are as many as questions. Anything else is not certain.
+    The order is this: the only one below the heading of the task; the one with its number; the one
+    at its place, if there are as many as questions. Anything else is not certain.
     """
     if not answers:
         return None
@@ -161,7 +161,7 @@ def _answer_by_number(
 ) -> _AnswerMatch | None:
     """Return the answer below the question's number.
 
-    Of several, as with a list of the questions, that with text.
+    Of several, as with a list of the questions, it is that with text.
     """
     hits = [index for index, answer in enumerate(answers) if answer.head.number == wanted.number]
     if len(hits) > 1:
@@ -240,7 +240,7 @@ class _AnswerSearch:
     def _passages_below(self, wanted: Label) -> list[Passage]:
         """Return the passages whose heading, or whose file, is labelled so.
 
-        Items of lists and mentions only first.
+        One that is an item of a list or a mention is among them only if it comes first.
         """
         ranked: list[tuple[tuple[bool, ...], Passage]] = []
         for document in self._read:
@@ -300,7 +300,7 @@ class _AnswerSearch:
     def _in_order(self, wanted: _Ordinal) -> list[Passage]:
         """Return the passages below headings that questions share.
 
-        Or those in files of that name, if this is clear.
+        These may also be those in files of that name, if this is clear.
         """
         groups = list[list[tuple[TextDocument, Heading]]]()
         for document in self._read:

@@ -61,7 +61,7 @@ class TextDocument(NamedTuple):
     def has_picture(self, start: int = 0, end: int | None = None) -> bool:
         """Return whether there is a picture between two lines.
 
-        In a PDF, on the pages with these lines.
+        In a PDF, it may be anywhere on the pages with these lines.
         """
         if self.file.suffix == ".pdf" and end is not None:
             first, last = self.page(start) or 1, self.page(max(start, end - 1)) or 1
@@ -136,7 +136,7 @@ class DocumentCollection:
     def named(self, patterns: Sequence[str]) -> tuple[list[TextDocument], list[_Unread]]:
         """Return the documents whose names match one of the patterns.
 
-        And what of them was not read, and why.
+        Also return what of them was not read, and why.
         """
         key = tuple(patterns)
         if key not in self._named:
@@ -174,7 +174,7 @@ class DocumentCollection:
     def document(self, file: File) -> TextDocument | _Unread | None:
         """Return a document, or the reason why it was not read.
 
-        None for a file that contains no answers.
+        It is None for a file that contains no answers.
         """
         if file.path not in self._read_files:
             self._read_files[file.path] = self._read_document(file)

@@ -36,7 +36,7 @@ _PR_SET_PDEATHSIG = 1
 def main() -> int:
     """Convert one document.
 
-    Arguments: `docx` or `pdf`, seconds of processor time, process id of the parent.
+    Its arguments are `docx` or `pdf`, seconds of processor time, and the process id of the parent.
     """
     kind, seconds, parent = sys.argv[1], float(sys.argv[2]), int(sys.argv[3])
     _end_with_parent(parent, seconds)
@@ -62,7 +62,7 @@ def is_out_of_time(code: int) -> bool:
 def _end_with_parent(parent: int, seconds: float) -> None:
     """End this process when its parent has ended.
 
-    By the kernel on Linux, elsewhere after so many seconds.
+    On Linux the kernel does this; elsewhere it ends after so many seconds.
     """
     if sys.platform == "linux":
         import ctypes
@@ -124,7 +124,7 @@ def _docx(data: bytes) -> bytes:
 def _elements(data: bytes) -> Iterator[tuple[str, str, bool]]:
     """Yield the name and text of each element of a Word file at its end.
 
-    And whether it is in a row of a table.
+    Each comes with whether it is in a row of a table.
 
     Copies that Word adds for older versions are omitted. Raises _TooLargeError.
     """

@@ -75,7 +75,7 @@ _LABEL = re.compile(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{
 class Label(NamedTuple):
     """The task and steps that a text names, and all of its words.
 
-    None and empty where it names none.
+    They are None and empty where it names none.
     """
 
     task: int | None

@@ -2,7 +2,7 @@
 
 These are the pictures and PDF files of its evidence, and of a written answer.
 
-Also the documents that may hold an answer for which no heading was found.
+The documents that may hold an answer for which no heading was found are among them.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -41,7 +41,7 @@ _DOCUMENTS = (
 def find_pictures(result: Result, submission: Submission) -> tuple[EmbeddedPicture | NotShown, ...]:
     """Return the pictures and PDF files of a criterion that needs manual grading.
 
-    And the files that are not shown.
+    Also return the files that are not shown.
 
     Of a Word file these are all of its pictures; a PDF opens on the page of the evidence or the
     answer. If no file is named for the evidence, all files of evidence are searched; if no answer
@@ -81,7 +81,7 @@ def is_empty(result: Result, report: Report) -> bool:
 
     There is no answer, no document and no picture that may be one.
 
-    Of evidence: no file that may be it.
+    Of evidence, there is no file that may be it.
     """
     if (
         not (_is_evidence(result) or _is_question(result))
@@ -101,7 +101,7 @@ def is_empty(result: Result, report: Report) -> bool:
 def find_content(result: Result, report: Report) -> str:
     """Return the written answer without empty lines, if it is all that there is to read.
 
-    Else an empty text.
+    Else return an empty text.
 
     Without an answer it is the text of the documents that may hold one.
     """
@@ -227,7 +227,7 @@ def _read_pictures(
 def _find_page(file: File, result: Result, documents: DocumentCollection | None) -> int:
     """Return the page of a PDF with the answer, or with the heading that names the evidence.
 
-    The first page without one.
+    It is the first page without one.
     """
     document = documents.document(file) if documents is not None else None
     if documents is None or not isinstance(document, TextDocument):

@@ -138,7 +138,7 @@ class _Grading:
     def _with_place(self, outcome: Outcome, criterion: Criterion) -> Outcome:
         """Return a failure of the robot with a place.
 
-        Without an own one that of the link that is examined.
+        Without an own one, it gets that of the link that is examined.
         """
         robot, link = self.submission.robot, criterion.arguments.get("link")
         if (
@@ -162,7 +162,7 @@ class _Grading:
     def _carry(self, result: Result, carried: Carried) -> Result:
         """Return a failure, or a skip because of a cause, as carried.
 
-        Only if the fact that then counts instead holds.
+        It is carried only if the fact that then counts instead holds.
         """
         cause = self._find_cause(result, carried.causes)
         if cause is None:
@@ -202,7 +202,7 @@ class _Grading:
     def _is_excused(self, criterion: Criterion, cause: str) -> bool:
         """Return whether what counts instead passes.
 
-        Only if another criterion is the cause of a failure.
+        It does so only if another criterion is the cause of a failure.
         """
         for carried in (
             carried_failure
@@ -222,7 +222,7 @@ class _Grading:
     def _find_cause(self, result: Result, causes: Sequence[str]) -> Result | None:
         """Return the failure that made the first of these criteria fail or be skipped.
 
-        Only if it made the result so, too.
+        The failure counts only if it made the result so, too.
 
         A skip because of a criterion that is itself carried from that failure counts, too.
         """
@@ -383,7 +383,7 @@ def _fault_outcome(check: Check, fault: str) -> Outcome:
 def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> MissingElement | None:
     """Return the error for a robot that is another one, and so has no `link`.
 
-    None if it may be that of the lab.
+    It is None if it may be that of the lab.
     """
     if robot is None or not robot.is_foreign(rubric.links):
         return None

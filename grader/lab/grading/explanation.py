@@ -107,7 +107,7 @@ def _without_looks(problems: Sequence[Problem]) -> list[Problem]:
 def _explains(problem: Problem, outcome: Outcome, *, is_part: bool) -> bool:
     """Return whether a problem at the place of a failure explains it.
 
-    Of a missing part, only what precedes ROS 2.
+    Of a missing part, only what precedes ROS 2 explains it.
     """
     if problem.kind.is_before_ros:
         return True
@@ -145,7 +145,7 @@ def _inside(
 def _element_offsets(place: Location, source: Source, *, is_of_link: bool = False) -> range:
     """Return the offsets of the element at a place, or of its link.
 
-    Only of the tag if an attribute is there.
+    If an attribute is there, they are only those of the tag.
     """
     if place.path != source.path:
         return range(0)

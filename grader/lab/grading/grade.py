@@ -233,7 +233,7 @@ def _names_in_criteria(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
 def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) -> str:
     """Return a note on the documents that may have evidence, but were not read.
 
-    Empty if there are none.
+    It is empty if there are none.
     """
     if (
         all(result.files for result in evidence)
@@ -274,7 +274,7 @@ def _explain_by_convention(
 ) -> tuple[str, frozenset[str]]:
     """Return a note on frames of the whole robot that are rotated or moved alike.
 
-    And the criteria that it explains.
+    Also return the criteria that it explains.
 
     Both are empty if there is nothing to explain. The points stay: the lab says where its frames
     are. The note says that they are lost by one decision, not by many mistakes.

@@ -103,7 +103,7 @@ class Result(NamedTuple):
     def why_given(self) -> str:
         """Why the outcome does not decide the points: the adjustment, or an error carried forward.
 
-        Empty if it does.
+        It is empty if it does.
         """
         if self.manual_mark is not None:
             return ""
@@ -241,7 +241,7 @@ class Report(NamedTuple):
     def counting(self) -> Decimal | None:
         """The points that count for the student: the grade, else the score.
 
-        None for an excused student.
+        It is None for an excused student.
         """
         if self.grade is not None:
             return self.grade.points
@@ -313,7 +313,7 @@ class Report(NamedTuple):
     def fault(self) -> str:
         """The message of the first failure of a check or the grader, except on adjusted criteria.
 
-        Empty without one.
+        It is empty without one.
         """
         errored = (
             one for one in self.results if one.outcome.status == "errored" and not one.is_adjusted

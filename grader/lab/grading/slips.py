@@ -30,7 +30,7 @@ def judge_as_meant(
 ) -> tuple[tuple[Result, ...], Meant | None]:
     """Return the results of criteria with each slip of a submission paid by one of them.
 
-    And what they were judged on. `written` are those on the words as they are written.
+    Also return what they were judged on. `written` are those on the words as they are written.
 
     A slip in a file that ROS 2 loads counts only if no criterion fails with the meant word that
     passes with the written one: what ROS 2 ignores without harm is a comment.
@@ -108,8 +108,8 @@ class _Readings:
     def _payer(self, slip: Slip, slips: Sequence[Slip]) -> str | None:
         """Return the criterion that pays for a slip beside the others.
 
-        None if it does not count: it changes nothing, or a criterion fails with the word
-        that is meant.
+        It is None if the slip does not count: it changes nothing, or a criterion fails with the
+        word that is meant.
         """
         others = [other for other in slips if other is not slip]
         before_submission, before = self._read(others)
@@ -180,7 +180,7 @@ def _correction_text(slips: Iterable[Slip]) -> str:
 def problems_as_meant(problems: Iterable[Problem], meant: Meant) -> Iterator[Problem]:
     """Yield the problems of a URDF that are left with the words that are meant.
 
-    And those at these words, and what is assumed about each.
+    Also yield those at these words, and what is assumed about each.
     """
     urdf = meant.submission.urdf
     problems_left = urdf.problems if isinstance(urdf, Read) else ()

@@ -130,7 +130,7 @@ class Subjects:
     def pose_text(self, at: Mapping[str, float]) -> str:
         """Return the positions of joints that are there.
 
-        For example: 'joint_2' at 40 degrees and 'slide' at 0.1 m.
+        For example, this is 'joint_2' at 40 degrees and 'slide' at 0.1 m.
         """
         assert self.robot is not None
         joints = joints_at(self.robot, at)

@@ -116,7 +116,7 @@ Stage = Callable[[Situation, _Lost], Iterator[Iterable[Proposal]]]
 def _reference_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     """Yield what undoes a slip, then what differs from elsewhere.
 
-    First from the other side of the robot, then from the reference.
+    It first comes from the other side of the robot, then from the reference.
     """
     draft, difference = situation.draft, situation.difference
     subjects = {criterion.check.subject for criterion in lost}
@@ -238,7 +238,7 @@ def _pieces_by_link(pieces: Iterable[Piece], links: Sequence[str]) -> list[Piece
 def _list_links(criteria: Iterable[Criterion], difference: RobotDifference) -> list[str] | None:
     """Return the links whose joints and shapes decide criteria, with all above them.
 
-    None if all may.
+    It is None if all may.
     """
     links: dict[str, None] = {}
     robot, reference = difference.draft.robot, difference.reference.robot

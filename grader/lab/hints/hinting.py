@@ -59,7 +59,7 @@ class FixedFiles(NamedTuple):
 def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedReport:
     """Return a report with proven hints for criteria that failed.
 
-    Without any where the search would take long.
+    It has none where the search would take long.
     """
     if submission.is_costly:
         return _HintedReport(report, (), [])
@@ -251,7 +251,7 @@ def _draft(reference: ReferenceSolution | None) -> Draft | None:
 def _package(reference: ReferenceSolution | None, name: str) -> "Package | None":
     """Return the package of the reference solution.
 
-    If the rubric has several, the one of this name.
+    If the rubric has several, it is the one of this name.
     """
     if reference is None:
         return None
@@ -472,7 +472,7 @@ def _insertion(edit: Edit, submission: Submission) -> str:
 def _where(edit: Edit, submission: Submission) -> str:
     """Return the line of an edit, and which text in it is meant.
 
-    The latter if the text is there several times.
+    The latter is there if the text is there several times.
     """
     line, place = _line(edit, submission), _at(edit, submission.path)
     number = line.count(edit.old) if edit.old else 0

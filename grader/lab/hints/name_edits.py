@@ -82,7 +82,7 @@ class _Spelling(NamedTuple):
     def preference(self, new: str, old: str) -> int:
         """Return by how much more often one name is written than the other.
 
-        0 if neither text tells.
+        It is 0 if neither text tells.
         """
         text, text_of_reference = self.texts
         count_of_new = self._count(new, text)
@@ -126,7 +126,7 @@ def _exchanged_remappings(source: Source) -> Iterator[Proposal]:
 def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterator[Proposal]:
     """Yield the edit that gives a parameter the value that `parameter_is` asks for.
 
-    Only where a value is written plainly.
+    There is one only where a value is written plainly.
     """
     name, meant = wanted["parameter"], wanted.get("value")
     try:

@@ -106,7 +106,7 @@ def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
 def _proposals_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     """Yield edits of the file of a kind, and those that rename or create one.
 
-    Without a kind, of the package's name.
+    Without a kind, they are those of the package's name.
     """
     if not kind:
         yield from package_names(task, task.package.wanted_name or task.package.share.split("/")[1])
@@ -222,7 +222,7 @@ def _slip(word: str, known: Iterable[str]) -> str | None:
 def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Iterator[Proposal]:
     """Yield edits that undo one difference each between a file and its proper text.
 
-    Only if there are few.
+    There are none unless they are few.
     """
     start_of_text = int(source.text.startswith("\ufeff"))
     own_tokens = _TOKEN.findall(source.text[start_of_text:])
@@ -271,7 +271,7 @@ def _missing_in_words(file: PythonFile, offset: int, new: str) -> str:
 def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     """Yield edits that give a key or an attribute a value of the reference.
 
-    A key of YAML, or an attribute of XML.
+    This is a key of YAML, or an attribute of XML.
     """
     known: dict[str, list[str]] = {}
     for setting in _SETTING.finditer(wanted):
@@ -481,7 +481,7 @@ def _similar(path: str, known: Iterable[str]) -> list[str]:
 def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
     """Yield edits with which a launch file finds its files.
 
-    First of all together, then of one path each.
+    That of all together comes first, then those of one path each.
     """
     ways = []
     for reference in launch.references[:_MAX_PATHS]:
@@ -571,7 +571,7 @@ def _path_offsets(source: Source) -> Iterator[tuple[int, int]]:
 def _moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
     """Return the edits of one text each with which a path becomes the wanted one.
 
-    Those nearest to a line first.
+    Those nearest to a line come first.
     """
     distances: dict[Edit, int] = {}  # in lines
     for start, end in islice(_path_offsets(source), _MAX_PIECES):
@@ -602,7 +602,7 @@ def _replacements(piece: str, actual: str, wanted: str) -> Iterator[str]:
 def _without(source: Source, start: int, end: int) -> Edit:
     """Return the edit that removes a text.
 
-    As an argument with its quotes and comma where it is one.
+    Where it is an argument, its quotes and comma go with it.
     """
     text = source.text
     quote = text[start - 1 : start]

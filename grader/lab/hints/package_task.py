@@ -33,7 +33,7 @@ class PackageTask:
     def source(self, path: str | None) -> Source | None:
         """Return the text of a file of the package as it is.
 
-        None where there is none that can be read.
+        It is None where there is none that can be read.
         """
         text = _text(self.package, path) if path is not None else None
         if text is not None:
@@ -66,10 +66,7 @@ class PackageTask:
         return self.named(text) if text is not None else None
 
     def named(self, text: str) -> str:
-        """Return a text of the reference with the student's name of the package.
-
-        Or a path in it.
-        """
+        """Return a text or a path of the reference with the student's name of the package."""
         if self.reference is None or self.reference.name == self.package.name:
             return text
         return re.sub(
@@ -163,7 +160,7 @@ def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> It
 def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
     """Yield edits that give the package one name in all its files.
 
-    For a package that has another or several.
+    The package has another name or several.
     """
     names = _other_names(task, new)
     if not names:
@@ -184,7 +181,7 @@ def _other_names(task: PackageTask, new: str) -> list[str]:
     """Return the names of the package in its files that differ from the new one.
 
     They are those of its manifest and setup.py, and names like the new one in paths of its share
-    folder. None if the manifest has no name.
+    folder. There are none if the manifest has no name.
     """
     manifest, setup = task.package.manifest, task.package.installation
     if manifest is None or manifest.name is None:

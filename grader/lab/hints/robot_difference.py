@@ -151,7 +151,7 @@ class RobotDifference:
     def _materials(self) -> Iterator[Piece]:
         """Name a material as links use it, or give a link the reference's colour.
 
-        The latter for what a link shows if no material has the colour.
+        It does the latter for what a link shows if no material has the colour.
         """
         own_materials = {
             material.get("name", ""): material
@@ -267,7 +267,7 @@ class RobotDifference:
     def _rename(self, element: Element, name: str) -> Iterator[Piece]:
         """Rename an element.
 
-        A link with all that names it, or alone; a joint; a material where it is used or
+        This is a link with all that names it, or alone; a joint; or a material where it is used or
         defined.
         """
         tag, old = str(element.tag), element.get("name", "")
@@ -408,7 +408,7 @@ def normal(tag: str, attribute: str, text: str | None) -> str:
 def _wanted_value(step: Step) -> str | None:
     """Return the value that a step sets: that of the reference, else the default.
 
-    None if there is none.
+    It is None if there is none.
     """
     if step.verb == "set" and step.like is not None:
         return step.like.values[step.name]
@@ -493,7 +493,7 @@ def _values_of_one(steps_in_order: Iterable[Step]) -> Iterator[list[Step]]:
 def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
     """Return what gives a link another name, also where joints name it.
 
-    Nothing where several have the old one.
+    There is nothing where several have the old one.
     """
     links = [link for link in draft.links() if link.get("name") == old]
     if len(links) != 1:

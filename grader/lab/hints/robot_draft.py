@@ -40,7 +40,7 @@ _COMMENT = re.compile(r"(?<![ \t])[ \t]*+<!--.*?(?:-->|\Z)", re.DOTALL)
 class Set(NamedTuple):
     """A new value of an attribute of an element.
 
-    Or, with a tag, of its child of this tag, which may be missing.
+    With a tag, it is that of its child of this tag, which may be missing.
     """
 
     owner: Element
@@ -129,7 +129,7 @@ class Draft:
     def owner(self, element: Element) -> Element:
         """Return the child of the root that an element is or is in.
 
-        The root itself for the root.
+        It is the root itself for the root.
         """
         while (parent := element.getparent()) is not None and parent is not self.root:
             element = parent
@@ -138,7 +138,7 @@ class Draft:
     def find_link(self, element: Element) -> str:
         """Return the link that an element belongs to: of a joint its child.
 
-        Empty for a material.
+        It is empty for a material.
         """
         owner = self.owner(element)
         if owner.tag == "joint":
@@ -300,7 +300,7 @@ class Draft:
     ) -> list[Edits]:
         """Return the ways to give an attribute another text.
 
-        And elements that come from the same text others.
+        Elements that come from the same text get others.
         """
         tag = self._tags[element]
         wanted = {tag: (element.get(attribute) or "", escaped(value))}
@@ -335,7 +335,7 @@ class Draft:
     def write_text(self, element: Element, text: str) -> Edits:
         """Return the edit that gives an element another text.
 
-        None where it has children, or xacro evaluates it.
+        It is None where it has children, or xacro evaluates it.
         """
         tag = self._tags[element]
         wanted = {tag: ((element.text or "").strip(), escaped(text))}

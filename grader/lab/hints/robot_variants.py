@@ -84,7 +84,7 @@ def _first_parts(draft: Draft, link: str) -> dict[str, Element]:
 def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
     """Yield the numbers of the link at the other side, mirrored.
 
-    Only where the student builds both unlike the reference.
+    There are some only where the student builds both unlike the reference.
     """
     for link in links:
         other_link = _other_side(link)
@@ -107,7 +107,7 @@ def _mirror_numbers(
 ) -> Iterator[Piece]:
     """Yield the mirrored numbers of another element that are not `known`.
 
-    Those of its own element, which is first.
+    Those of its own element, the first of `known`, get them.
     """
     tag = str(other.tag)
     for name, attribute in TAGS[tag].attributes.items():
@@ -134,7 +134,7 @@ def _mirrored(values: Values) -> Iterator[Values]:
 def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
     """Yield the numbers of links as they may be meant, where they are not the reference's.
 
-    Where xacro computes them, the numbers that they come from.
+    Where xacro computes them, yield the numbers that they come from.
     """
     seen: set[Edits] = set()
     is_alone = difference.draft is difference.reference
@@ -173,7 +173,7 @@ def _exchange_of_two(difference: RobotDifference, element: Element) -> Iterator[
 def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> Iterator[Piece]:
     """Yield the numbers that an attribute may be meant to have, where it is written.
 
-    Else those that xacro computes it from.
+    If xacro computes it, yield those that it comes from.
     """
     unit = TAGS[str(element.tag)].attributes[name].unit
     least = 0.0 if unit == "m" and element.tag != "origin" else -inf  # of a size
@@ -259,7 +259,7 @@ def reversed_joints(difference: RobotDifference) -> list[Element]:
 def exchanges(difference: RobotDifference) -> list[Piece]:
     """Return what exchanges the ends of joints.
 
-    Parent and child of reversed joints, and the children of two joints of both sides.
+    These are parent and child of reversed joints, and the children of two joints of both sides.
     """
     pieces: list[Piece] = []
     for joint in reversed_joints(difference):
@@ -317,7 +317,7 @@ def leveled_supports(
 def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
     """Yield all lengths in metres.
 
-    For a robot of which they are all in centimetres or millimetres.
+    This is for a robot of which they are all in centimetres or millimetres.
     """
     lengths = [*_list_lengths(difference.draft)]
     if not any(element.tag != "origin" and max(values) >= LARGE for element, _, values in lengths):
@@ -344,7 +344,7 @@ def _list_lengths(draft: Draft) -> Iterator[tuple[Element, str, Values]]:
 def whole_links(difference: RobotDifference) -> Iterator[Piece]:
     """Yield where each link and what it shows are, and all its values.
 
-    Where they are, also with what it carries.
+    Where they are is also yielded with what it carries.
     """
     links: dict[str, list[Set]] = {}
     for piece in difference.pieces:
@@ -403,7 +403,7 @@ def _causes(difference: RobotDifference, changes: Sequence[Set]) -> str:
 def whole_elements(difference: RobotDifference) -> Iterator[Piece]:
     """Yield the changes in one element together, and in one child of the robot.
 
-    Of links and joints no values.
+    Of links and joints, no values are among them.
     """
     draft = difference.draft
     for is_owner in (False, True):

@@ -89,7 +89,7 @@ class Trials:
     ) -> _Results:
         """Return the results of criteria with edits.
 
-        None where these do not fit, or ROS 2 would reject or drop more.
+        It is None where these do not fit, or ROS 2 would reject or drop more.
 
         With the results that criteria had, there are none where one is worse now.
         `whole` reads the submission from scratch. Raises NoTrialsLeft.
@@ -181,7 +181,7 @@ def _has_new_problems(before: Submission, after: Submission) -> bool:
 def _has_new_build_errors(before: Submission, after: Submission) -> bool:
     """Return whether a build of the package stops for another reason than before.
 
-    Also where it fails in both: an edit of a name must not leave the folder of its module.
+    It may also fail in both: an edit of a name must not leave the folder of its module.
     """
     if before.package is None or after.package is None:
         return False
@@ -225,7 +225,7 @@ def _is_of_robot(path: str, submission: Submission) -> bool:
 def is_worse(before: Result, after: Result) -> bool:
     """Return whether a criterion no longer passes, has fewer points, or is undecided now.
 
-    Never an adjusted one.
+    An adjusted one is never worse.
     """
     was, status = before.outcome.status, after.outcome.status
     if after.is_adjusted:
@@ -305,7 +305,7 @@ class _Tried(NamedTuple):
 class _Proof(NamedTuple):
     """What a proposal gains, and the results then.
 
-    As a hint says it, and together with all edits before it.
+    The gains are as a hint says them, and together with all edits before it.
     """
 
     proposal: Proposal
@@ -561,7 +561,7 @@ class HintSearch:
     def _find_proof(self, proposal: Proposal, wanted: frozenset[str]) -> _Proof | None:
         """Return what edits gain alone, or else after the edits before them.
 
-        None if they lose anything.
+        It is None if they lose anything.
         """
         edits = tuple(edit for edit in proposal.edits if edit not in self.edits)
         together, after = self._gains(self.edits, edits, self.results)
@@ -662,7 +662,7 @@ class HintSearch:
     ) -> tuple[dict[str, Decimal], _Results]:
         """Return what edits gain, with the results.
 
-        Nothing where a criterion is worse with them.
+        It is nothing where a criterion is worse with them.
         """
         after = self.trials.graded((*before, *edits), against)
         return list_gains(against, after), after

@@ -37,7 +37,7 @@ class Node(NamedTuple):
 class Step(NamedTuple):
     """One step from a tree to another.
 
-    What happens to `own_node`, a node of the first tree, as in `like` of the other one.
+    It is what happens to `own_node`, a node of the first tree, as in `like` of the other one.
 
     set: the value `name` becomes that of `like`. unset: it goes. rename: it is called `other`.
     retag: the node gets the tag of `like`. add: `like` is added to `own_node`. remove: `own_node`
@@ -55,7 +55,7 @@ class Step(NamedTuple):
 class _Pairs(NamedTuple):
     """Two lists of nodes, paired.
 
-    Those that belong together, those of the first alone, and those of the second alone.
+    These are those that belong together, those of the first alone, and those of the second alone.
     """
 
     both: list[tuple[Node, Node]]
@@ -66,7 +66,7 @@ class _Pairs(NamedTuple):
 def steps(own_node: Node, like: Node) -> list[Step]:
     """Return the steps from a tree to another.
 
-    What is to move, the values, then what is to be added and removed.
+    First is what is to move, then the values, then what is to be added and removed.
     """
     every_step = [*_steps(own_node, like)]
     spare = [step.own_node for step in every_step if step.verb == "remove"]
@@ -124,7 +124,8 @@ def _values(own_node: Node, like: Node) -> Iterator[Step]:
 def paired(own_nodes: Sequence[Node], like: Sequence[Node]) -> _Pairs:
     """Pair nodes.
 
-    By tag and all keys, then by each key, then by tag and likeness, then by similar tags.
+    They are paired by tag and all keys, then by each key, then by tag and likeness, then by similar
+    tags.
     """
     pairing = _Pairing(own_nodes, like)
     depth = max((len(node.keys) for node in (*own_nodes, *like)), default=0)

@@ -62,7 +62,7 @@ def _is_list(value: Any, kind: type) -> bool:
 def _is_below(path: str) -> bool:
     """Return whether a path names a TOML file in the rubric's folder or below.
 
-    On every operating system.
+    The answer is the same on every operating system.
     """
     return (
         path.endswith(".toml")
@@ -450,7 +450,7 @@ def rubric_schema() -> _Schema:
 def _argument_type(check: Check, name: str) -> TomlType:
     """Return the type of an argument with its meaning.
 
-    And its default if a rubric can give that.
+    It has its default, too, if a rubric can give that.
     """
     import json  # late: only the schema needs it
 

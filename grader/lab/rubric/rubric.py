@@ -352,7 +352,7 @@ def unknown_causes(rubric: Rubric) -> list[tuple[TomlPath, str]]:
 def read_correct_rows(data: bytes, path: Path) -> Rubric | None:
     """Return a rubric without the criteria in which there are mistakes, and without its totals.
 
-    None if there are other mistakes in it.
+    It is None if there are other mistakes in it.
     """
     table = read_toml(data, path)[1]
     rows = table.get("criterion")

@@ -15,7 +15,7 @@ DEFAULT_RUBRIC = "lab6"  # of the command line
 def list_files(name: str, answers: Path | None = None) -> list[Path]:
     """Return the files and folders that a rubric is read from.
 
-    Its own file, its model answers, its reference.
+    These are its own file, its model answers and its reference.
 
     It is only its own file if there is a mistake in it. Of a reference in the rubric's own folder
     it is only the URDF.

@@ -146,7 +146,7 @@ class Validation:
     def _check_subject(self, where: TomlPath, row: TomlRow, check: Check) -> None:
         """Complain of a pose or a comparison that a check cannot have.
 
-        A pose for a check that examines no robot, and a comparison without a reference.
+        This is a pose for a check that examines no robot, or a comparison without a reference.
         """
         if "at" in row and "robot" not in check.examined:
             self._complain(
@@ -209,7 +209,7 @@ class Validation:
     def _check_order(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> None:
         """Complain of ids in `requires` that are not those of criteria above it.
 
-        And of `carried` from the criterion itself.
+        Also complain of `carried` from the criterion itself.
         """
         given: Any = self.rubric  # also of a list with other mistakes in it
         for key in where:
@@ -265,7 +265,7 @@ class Validation:
     def _bind_check(self, where: TomlPath, row: TomlRow) -> BoundCheck | None:
         """Return the check of a row with its converted arguments.
 
-        None if there is no such check.
+        It is None if there is no such check.
         """
         name, given = row.get("check"), row.get("with", {})
         check = self._look_up_check((*where, "check"), name) if name is not None else None

@@ -48,7 +48,7 @@ def content(submission: Submission, path: str) -> bytes | None:
 def with_urdf(submission: Submission, files: _Files) -> Submission:
     """Return a submission with only the URDF read again.
 
-    For edits of the URDF and of xacro that it includes.
+    This is for edits of the URDF and of xacro that it includes.
     """
     submission = submission.renewed()
     urdf = submission.urdf

@@ -153,7 +153,7 @@ class LabFolders:
     def is_beside_archive(self, path: str) -> bool:
         """Return whether a file of no lab is beside an archive of this lab and no other.
 
-        Or a folder around it.
+        It is enough that a folder around it is.
         """
         if self.belonging(path) is not Belonging.NO_LAB:
             return False
@@ -245,7 +245,7 @@ def is_part(name: str, lab: Collection[str] = ()) -> bool:
 def _join_words(words: Sequence[str]) -> str:
     """Return words without spaces, but a point between numbers.
 
-    For example lab6, and lab6.2 of Lab6 (2), which is not lab 62.
+    For example, this is lab6, or lab6.2 of Lab6 (2), which is not lab 62.
     """
     return _NUMBER_BORDER.sub(".", " ".join(words)).replace(" ", "")
 

@@ -73,7 +73,7 @@ class _Trials:
     def _read(self, slip: Slip) -> Read | None:
         """Return the robot with a slip corrected.
 
-        None if that cannot be read, or if the robot was read as often as it may be.
+        It is None if that cannot be read, or if the robot was read as often as it may be.
         """
         self._left -= 1
         files = edited_files(self._submission, slip.edits) if self._left >= 0 else None

@@ -1,6 +1,6 @@
 """What of a submission is graded.
 
-Where its lab is searched, and which URDF and package of these files, and why.
+This is where its lab is searched, and which URDF and package of these files are graded, and why.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -46,7 +46,7 @@ _ELSEWHERE = {
 class UrdfChoice(NamedTuple):
     """The path of the URDF that is graded, if there is one.
 
-    And the other candidates, and which of these fit as well.
+    It also has the other candidates, and which of these fit as well.
     """
 
     path: str | None
@@ -57,7 +57,7 @@ class UrdfChoice(NamedTuple):
     def read_in(self, surroundings: Surroundings) -> tuple[Read, Budget] | None:
         """Return the URDF as it was read among several candidates.
 
-        Only if it is read alike in these surroundings.
+        It counts only if it is read alike in these surroundings.
         """
         if self.reading is None or self.reading.read is None:
             return None
@@ -345,7 +345,7 @@ def _why_no_package(
 def _other_lab(tree: Tree, labs: LabFolders, urdf: str | None, roots: Sequence[str]) -> str:
     """Return the folder of another lab that is searched: that of the URDF.
 
-    Without one, if there is nothing else.
+    Without a URDF, it is returned if there is nothing else.
     """
     if urdf is not None:
         if labs.belonging(urdf) is Belonging.OTHER_LAB:

@@ -81,7 +81,7 @@ DEFAULTS = Opening()
 class NoPackage(NamedTuple):
     """Why there is no package, and which there are.
 
-    Of several packages, the name of the one that is missing.
+    Of several packages, it has the name of the one that is missing.
     """
 
     message: str = NO_PACKAGE
@@ -175,7 +175,7 @@ class Submission(OpenedWorkspace):
     def sha256(self) -> str | None:
         """The hash of the URDF's bytes.
 
-        Of a URDF on its own that includes others, of a list of the hashes of all.
+        Of a URDF on its own that includes others, it is that of a list of the hashes of all.
         """
         own_hash = hash_bytes(self.urdf.data) if isinstance(self.urdf, Read) else None
         if own_hash is None or not self.besides:

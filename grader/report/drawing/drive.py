@@ -17,7 +17,8 @@ _DIGITS = 5  # of metres and parts of 1
 def drive_data(picture: Picture) -> dict[str, Any] | None:
     """Return how the robot comes to rest on level ground and then drives.
 
-    None if it has no wheel, it cannot be determined how it stands, or it is too large.
+    It is None if the robot has no wheel or is too large, or if it cannot be determined how it
+    stands.
 
     All is in the frame of the scene. `mass` is the centre of mass, which moves straight down;
     `fall` has four numbers for each pose on the way: where up is, and the height of the mass above
@@ -56,7 +57,7 @@ def drive_data(picture: Picture) -> dict[str, Any] | None:
 def _with_boxes(scene: Scene) -> tuple[Configuration, bool]:
     """Return the robot with the boxes around its meshes where the scene shows them.
 
-    And whether that changes how it stands.
+    Also return whether that changes how it stands.
     """
     robot = scene.robot.known
     links = [_boxed(link, scene) for link in robot.links]

@@ -21,7 +21,7 @@ _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name wh
 def draw_report(report: Report) -> Picture | None:
     """Return the picture of a graded robot.
 
-    None if there is no robot, or if it can no longer be read.
+    It is None if there is no robot, or if it can no longer be read.
     """
     if report.submission.robot is None or not report.submission.robot.links:
         return None

@@ -36,7 +36,7 @@ class MeshStore:
     def data(self, address: str) -> bytes | None:
         """Return the triangles of a mesh, as `Triangles.packed` has them.
 
-        None if no mesh has the address.
+        It is None if no mesh has the address.
         """
         return self._data.get(address)
 

@@ -93,7 +93,7 @@ class Scene:
     def centre(self, link: str) -> Vector | None:
         """Return the centre of the first shape of a link, else the origin of its frame.
 
-        None without a pose.
+        It is None without a pose.
         """
         pose = next(
             (body.T_frame_shape for body in self.bodies if body.link == link), self.poses.get(link)
@@ -104,7 +104,7 @@ class Scene:
     def root(self) -> str:
         """The root of the tree that `frame` is in.
 
-        `frame` itself if it is on or below a loop of joints.
+        It is `frame` itself if that is on or below a loop of joints.
         """
         with suppress(MissingElement):
             return self.robot.find_root(self.frame)
@@ -222,7 +222,7 @@ def _body(link: str, visual: Visual, pose: Transform, meshes: "MeshLoader | None
 def _box_around(mesh: Mesh, meshes: "MeshLoader") -> tuple[Vector, Vector] | str:
     """Return the size and the centre of the box around a scaled mesh, in its frame (m).
 
-    Else why there is none.
+    If there is none, return why.
     """
     loaded = meshes.load(mesh)
     if isinstance(loaded, str):
@@ -247,7 +247,7 @@ def _is_drawable(values: Vector) -> bool:
 def _wheel(scene: Scene, link: str) -> Wheel | None:
     """Return a link as a wheel.
 
-    None if it has no place, no joint turns it, it does not roll, or no shape is known.
+    It is None if it has no place, no joint turns it, it does not roll, or no shape is known.
     """
     centre = scene.centre(link)
     with suppress(*_NOT_KNOWN):
@@ -297,7 +297,7 @@ def plain_picture(
 ) -> Picture | None:
     """Return the picture of a robot that is not graded, in the frame of one of its links.
 
-    None without either. `wheels` are the links that drive it, if they are known.
+    It is None without either. `wheels` are the links that drive it, if they are known.
     """
     if robot is not None and frame is not None:
         return Picture(make_scene(robot, frame, meshes=meshes), (), (), (), {"wheels": wheels})

@@ -145,7 +145,7 @@ def _wrapped_lines(texts: Iterable[str]) -> list[str]:
 def drawing_file(picture: Picture | None, title: str, words: Iterable[str], reason: str) -> str:
     """Return a drawing as the text of an SVG file, with words below its title.
 
-    Without a picture, the reason.
+    Without a picture, it shows the reason.
     """
     above = _wrapped_lines(filter(None, words))
     if picture is not None:

@@ -84,7 +84,7 @@ class Panel(NamedTuple):
 def outline_body(body: Body) -> _Points:
     """Return points of the frame whose hull is a body.
 
-    Of a sphere and of the ends of a capsule, those that are farthest along the axes.
+    Of a sphere and of the ends of a capsule, they are those that are farthest along the axes.
     """
     pose, shape = body.T_frame_shape, body.shape
     if isinstance(shape, Capsule | Sphere):
@@ -217,7 +217,7 @@ class FreePlaces:
     def take(self, centres: Iterable[Place], size: Place) -> Place | None:
         """Take the first of some centres at which a label of a size is in the panel and free.
 
-        None without one.
+        It is None without one.
         """
         panel, (across, down) = self._panel, size
         for x, y in centres:

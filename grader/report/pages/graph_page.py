@@ -115,7 +115,7 @@ def graph_html(shown: ShownGraph, viewing: GraphViewing | None = None) -> str:
 def fitting_drawing(graph: LaunchGraph) -> GraphDrawing | None:
     """Return the drawing of a graph for a page on something else: as much as such a page holds.
 
-    None of a graph without nodes.
+    It is None without nodes.
     """
     if not graph.nodes:
         return None

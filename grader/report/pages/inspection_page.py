@@ -33,7 +33,7 @@ _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 def inspection_html(inspection: Inspection, viewing: Viewing | None = None) -> str:
     """Return the inspection as an HTML page, with the joints at the given positions.
 
-    That of `grader view` with `viewing`.
+    With `viewing`, it is that of `grader view`.
     """
     robot = inspection.robot
     configuration = robot.configuration if robot is not None else None

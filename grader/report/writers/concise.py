@@ -1,7 +1,7 @@
 """One line for each finding, `path:line:column: CODE message`.
 
-For editors, grep and problem matchers. The paths begin in the current folder; without a finding
-there is no line.
+Editors, grep and problem matchers read them. The paths begin in the current folder; without a
+finding there is no line.
 """
 
 from collections.abc import Iterable

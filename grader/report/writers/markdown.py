@@ -46,7 +46,7 @@ def render_markdown(report: Report) -> str:
 def cut_markdown(report: Report, most: int) -> str:
     """Return the first blocks of a report that fit into a number of bytes of UTF-8.
 
-    And a notice if some are missing.
+    A notice follows if some are missing.
 
     It is for job summaries, which students read, so it has no model answers.
     """
@@ -115,7 +115,7 @@ def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str
 def _entry_head(entry: Entry) -> str:
     """Return what a mistake costs and its criteria.
 
-    Of another criterion the points, and the title where it holds.
+    Of another criterion, return the points, and the title where it holds.
     """
     result, name = entry.result, code(entry.id)
     if entry.lost or is_failure(result):

@@ -42,14 +42,14 @@ from grader.report.writers.as_json import SCORE
 
 _MAX_LISTED, _MAX_DIFF = 10, 14
 _DEEPEST = 4  # indentation of a sentence
-_OF_ELEMENT = ("element deleted", "visual added")  # families of mutants whose place is no attribute
+_OF_ELEMENT = ("element deleted", "visual added")  # mutations whose place is no attribute
 _NUMBER_OF_ID = re.compile(r" \(\d+\)$")  # of equal ones
 
 
 def render_rubric_test(test: RubricTest, width: int) -> str:
     """Return the result in lines of at most this width.
 
-    What was graded, what is wrong, the score last.
+    They say what was graded and what is wrong; the score comes last.
     """
     lines = [f"{test.reference.rubric.id}: {test.reference.rubric.title}", "", *_count_lines(test)]
     if test.lost:
@@ -188,7 +188,7 @@ def _place(mutant: Mutant) -> str:
         return f"{mutant.path}, line {mutant.line}"
     _, _, change = mutant.id.partition(": ")
     element = _NUMBER_OF_ID.sub("", change.partition(" -> ")[0])
-    if " " in element and mutant.family not in _OF_ELEMENT:
+    if " " in element and mutant.mutation not in _OF_ELEMENT:
         element = element.rpartition(" ")[0]  # without its attribute
     return f"{element} in {mutant.path}"
 
@@ -223,7 +223,9 @@ def _cut(lines: Sequence[str], room: int) -> list[str]:
 _LOSSES = Many(JsonObject({"name": TEXT, "criteria": mapping(TEXT), "diff": TEXT}))
 _SURVIVOR = JsonObject(
     {
-        **inner("mutant", {**each(TEXT, "id family path"), "line": COUNT}),
+        **inner("mutant", {"id": TEXT}),
+        "family": (TEXT, "mutant.mutation"),
+        **inner("mutant", {"path": TEXT, "line": COUNT}),
         "diff": TEXT,
         "reason": (nullable(TEXT), lambda survivor: survivor.reason or None),
     }

@@ -11,7 +11,7 @@ from grader.report.drawing.three_views import NO_PICTURE, drawing_file
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file.
 
-    Without a robot, a sentence with the reason.
+    Without a robot, it shows a sentence with the reason.
     """
     words = [grade_line(report), verdict_line(report), bonus_line(report)]
     if report.another_robot:

@@ -145,7 +145,7 @@ def _show_remarks(section: Section, page: Page) -> None:
 def _show_later(report: Report, missing_text: str, missing: Sequence[Line], page: Page) -> None:
     """Add how much is left to submit.
 
-    And what was found for manual grading, and what matches nothing.
+    Also add what was found for manual grading, and what matches nothing.
     """
     texts = [text for text in (content.hand_in_line(report), missing_text) if text]
     texts += [line.text for line in missing if line.role == "there"]
@@ -166,7 +166,7 @@ def _show_missing(missing: Sequence[Line], page: Page) -> None:
 def _show_start(report: Report, sections: ReportSections, page: Page) -> None:
     """Add what was graded, the result, and notes.
 
-    The package only if the path of the URDF does not show it.
+    The package is among it only if the path of the URDF does not show it.
     """
     submission = report.submission
     rejected = ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
@@ -203,8 +203,8 @@ def _show_mistakes(mistakes: Sequence[Entry], report: Report, page: Page) -> Non
 def _brief_blocks(entry: Entry) -> Iterator[Block]:
     """Yield the blocks of a short report.
 
-    What is expected only if needed, and nothing that head and hint say. What names that do not
-    agree break stays.
+    What is expected is there only if needed, and nothing that head and hint say. What names that do
+    not agree break stays.
     """
     has_names = any(other.result.criterion.check.name == "names_agree" for other in entry.also)
     is_clear = entry.result.outcome.expected is not None or bool(entry.texts("hint", "feedback"))

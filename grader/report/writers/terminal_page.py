@@ -36,7 +36,7 @@ class Page(NamedTuple):
     def close_up(self, most: int) -> None:
         """Remove empty rows, the last ones first, until there are at most so many rows.
 
-        None if they are too many without.
+        Nothing is removed if they are too many without.
         """
         empty = [index for index, row in enumerate(self.rows) if not row.plain]
         excess = self.height + len(empty) - most

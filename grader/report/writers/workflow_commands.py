@@ -36,7 +36,7 @@ def limited_annotations(annotations: Sequence[Annotation], notices: int) -> Iter
 def annotation_place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[str, str]:
     """Return the properties of an annotation at a location.
 
-    As seen from the root of the repository; empty without.
+    The location is as seen from the root of the repository; without one, they are empty.
     """
     if where is None or base.is_outside:  # a file of the repository may have the same path
         return {}

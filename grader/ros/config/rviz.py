@@ -113,7 +113,7 @@ class RvizFile(NamedTuple):
 
 @reuse
 def read_rviz(data: bytes, path: str) -> RvizFile:
-    """Read an RViz file. Never raises."""
+    """Read an RViz file. It never raises."""
     resolved = resolve_conflicts(data)
     if resolved is not None:
         problem = Problem(kinds.BAD_RVIZ, resolved.message, Location(path, resolved.line, 1))

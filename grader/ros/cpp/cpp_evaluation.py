@@ -93,7 +93,7 @@ class CppEvaluation:
         self._depth = 0
 
     def evaluate_node(self, node: CppNode | None) -> CppValue:
-        """Return the value of an expression; None without one. Never raises."""
+        """Return the value of an expression; None without one. It never raises."""
         if node is None:
             return None
         if self._depth >= _MAX_DEPTH or node in self._active:

@@ -144,7 +144,7 @@ class CppSyntax:
 
 
 def parse_cpp(data: bytes, path: str, budget: Budget) -> CppSyntax:
-    """Return the syntax of a file, which ends where it is broken too badly. Never raises."""
+    """Return the syntax of a file, which ends where it is broken too badly. It never raises."""
     syntax = CppSyntax(path, data.decode("utf-8", "replace"))
     if len(syntax.data) > MAX_BYTES:
         syntax.unread = "the file is too large"

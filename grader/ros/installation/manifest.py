@@ -60,7 +60,7 @@ class Manifest(NamedTuple):
 
 @reuse
 def read_manifest(data: bytes, path: str) -> Manifest:
-    """Read a package.xml. Never raises: errors are among the problems."""
+    """Read a package.xml. It never raises: errors are among the problems."""
     resolved = resolve_conflicts(data)
     if resolved is not None:
         manifest = read_manifest(resolved.data, path)

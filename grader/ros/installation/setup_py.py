@@ -187,7 +187,7 @@ def read_setup(
 ) -> Installation:
     """Evaluate the setup.py of a package with these files; its work is charged to the budget.
 
-    Python is that of the releases. Never raises.
+    Python is that of the releases. It never raises.
 
     The file system lists a folder in any order. If there are several files, other orders are
     evaluated as well. colcon runs the file twice, with __file__ as "setup.py" and as an absolute

@@ -74,7 +74,7 @@ class _Line(NamedTuple):
 def read_interface(data: bytes, path: str, package: str) -> Interface:
     """Read the file of a message, service or action of a package.
 
-    Never raises: what rosidl does not accept is among the faults.
+    It never raises: what rosidl does not accept is among the faults.
     """
     kind = cast("InterfaceKind", posixpath.splitext(path)[1].removeprefix("."))
     try:

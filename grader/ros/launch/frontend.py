@@ -258,7 +258,7 @@ class _Entity:
 def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | LaunchFault:
     """Return the root entity of a launch file in XML or YAML, or why it cannot be read.
 
-    Never raises.
+    It never raises.
     """
     try:
         data.decode()  # as open does, whatever the file itself says of its encoding

@@ -122,7 +122,7 @@ def read_launch(
     work: Budget | None = None,
     releases: tuple[Release, ...] = (),
 ) -> Launch:
-    """Read a launch file and evaluate it. Never raises.
+    """Read a launch file and evaluate it. It never raises.
 
     Args:
         data: The file's contents.

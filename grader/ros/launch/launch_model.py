@@ -415,7 +415,7 @@ class Launch(NamedTuple):
 class Findings:
     """The findings so far in one launch file.
 
-    `sets_parameters`: an action gives parameters to all nodes.
+    `sets_parameters` says whether an action gives parameters to all nodes.
     """
 
     locate: Callable[[Position], Location]

@@ -96,7 +96,7 @@ def evaluate_parameters(
 
     Returns:
         What each item gives the node: what follows the first error or doubt is evaluated when it is
-        iterated. And that error or doubt, if there is one.
+        iterated; and that error or doubt, if there is one.
     """
     has_namespace = call.kwargs.get("namespace") is not None or NAMESPACE in context.arguments
     is_named = has_namespace and call.kwargs.get("name") is not None
@@ -740,9 +740,9 @@ def list_controllers(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
 
     The nodes have the files and remappings that it gives them.
 
-    None if not all are known. A controller has the namespace of its controller manager, in whose
-    process it runs: what that is given applies to it as well, and what the spawner gives counts
-    more.
+    They are None if not all are known. A controller has the namespace of its controller manager, in
+    whose process it runs: what that is given applies to it as well, and what the spawner gives
+    counts more.
     """
     words = spawner.arguments
     if words is None or None in words or spawner.namespace is None:

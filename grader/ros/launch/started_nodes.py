@@ -149,7 +149,7 @@ def _add_names(
 ) -> StartedNode:
     """Return a node with its name, arguments, parameters and remappings.
 
-    Also returns whether it is given the robot itself.
+    Also return whether it is given the robot itself.
     """
     words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
     ros_words: list[str] = []

@@ -1,6 +1,6 @@
 """Which names of nodes, topics, services and actions ROS 2 accepts.
 
-By rmw/src/validate_node_name.c, rcl/src/rcl/validate_topic_name.c and rmw/src/
+The rules are those of rmw/src/validate_node_name.c, rcl/src/rcl/validate_topic_name.c and rmw/src/
 validate_full_topic_name.c, which are asked before a name is remapped.
 """
 

@@ -46,7 +46,7 @@ _ENDINGS = {
 class FilePlace(NamedTuple):
     """Where a launch file looks for a file, or why it is not there.
 
-    `missing`: a build does not install it.
+    The state is `missing` if a build does not install it.
 
     `mistake` is the text without what differs between students, `cause` one of those of the check
     `launch_finds_files`.

@@ -193,7 +193,7 @@ def _depth(folder: str) -> tuple[int, str]:
 def missing_files(package: Package, urdf: str) -> tuple[int, bool]:
     """Return how many of its usual files a package lacks.
 
-    Also returns whether it lacks the URDF at its path.
+    Also return whether it lacks the URDF at its path.
     """
     files = package.tree.files
     has_urdf = urdf in files and files[urdf].size > 0

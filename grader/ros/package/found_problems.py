@@ -114,7 +114,7 @@ def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
 def _naming_problems(package: Package, setup: Installation) -> Iterator[Problem]:
     """Yield what is wrong with the package's name in setup.py.
 
-    Also yields what is wrong with the entries that register the package.
+    Also yield what is wrong with the entries that register the package.
     """
     start = setup.location(setup.called_at)
     declared = package.manifest.name if package.manifest is not None else None

@@ -26,7 +26,7 @@ class Lookup(NamedTuple):
 def look_up(owner: Package, target: str) -> Lookup:
     """Return what a build of a package installs at a path below the prefix.
 
-    If it installs nothing there, returns what the package has instead.
+    If it installs nothing there, return what the package has instead.
     """
     setup = owner.installation
     if setup is None:
@@ -66,7 +66,7 @@ def _instead(owner: Package, target: str) -> Lookup:
 def _meant_by(owner: Package, target: str) -> list[str]:
     """Return the file of a package that is at the same place in its folder.
 
-    If there is none, returns all with the same name.
+    If there is none, return all with the same name.
     """
     inside, name = target.removeprefix(owner.share), posixpath.basename(target)
     if inside in owner.tree.files:
@@ -120,7 +120,7 @@ def open_meant(
 ) -> tuple[bytes, str] | None:
     """Return what builds install at a path below the prefix.
 
-    If they install nothing, returns the only file of its name in the package of the path.
+    If they install nothing, return the only file of its name in the package of the path.
 
     With `absent_are_empty`, a file that surely is not there is empty.
     """

@@ -198,7 +198,7 @@ def _sure_fault(file: MeshFile, packages: Sequence[Package], tree: Tree) -> str:
 def _fault_in_package(package: Package, target: str, tree: Tree) -> str:
     """Return what is wrong with the file that a build installs at a path.
 
-    If it installs none there, returns why.
+    If it installs none there, return why.
     """
     lookup, name = look_up(package, target), posixpath.basename(target)
     file = package.tree.files.get(lookup.path) if lookup.state == "installed" else None

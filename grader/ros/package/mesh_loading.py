@@ -118,7 +118,7 @@ class MeshLoader:
 def _find_in_package(named: MeshFile, package: Package, path: str, tree: Tree) -> File | str:
     """Return the file of a package that a build installs where a mesh is looked for.
 
-    It may also be one that a build may install there. If there is none, returns why.
+    It may also be one that a build may install there. If there is none, return why.
     """
     target = f"share/{named.package}/{path}"
     place = look_up(package, target)

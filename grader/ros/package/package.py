@@ -374,7 +374,7 @@ class Package:
     def launch_file(self, name: str) -> str | None:
         """Return the launch file of this name, if need be in another language.
 
-        If there is none, returns that of the closest name, else any.
+        If there is none, return that of the closest name, else any.
         """
         files = sorted(
             self.launch_files,
@@ -579,7 +579,7 @@ class Package:
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return what a build of any of its packages installs at a path below the prefix.
 
-        Also returns the file's path.
+        Also return the file's path.
         """
         for package in self.packages.values():
             if path in package.installed:

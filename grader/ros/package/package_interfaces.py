@@ -37,7 +37,7 @@ class PackageInterfaces(NamedTuple):
 
 
 def read_interfaces(package: Package) -> PackageInterfaces:
-    """Return the messages, services and actions of a package. Never raises."""
+    """Return the messages, services and actions of a package. It never raises."""
     setup = package.installation
     if setup is None or setup.fault is not None:
         return PackageInterfaces(is_complete=False)

@@ -181,7 +181,7 @@ class Surroundings(NamedTuple):
     def robot_references(self, path: str) -> "list[NamedFile]":
         """Return where launch files of the graded package, else of others, read a URDF.
 
-        If none does, returns those in a folder around.
+        If none does, return those in a folder around.
         """
         around = self._launched_packages(path)
         return [
@@ -310,7 +310,7 @@ class Surroundings(NamedTuple):
     def installed(self, package: str, inside: str) -> str | None:
         """Return the file at a path in a package once it is built.
 
-        Without any package, returns the most similar path.
+        Without any package, return the most similar path.
         """
         owners = [*self._named(package)]
         if owners:
@@ -426,7 +426,7 @@ def _expanded(
 ) -> Reading:
     """Return the robot that xacro makes of a file.
 
-    Where it fails under arguments that are assumed, returns the robot without them.
+    Where it fails under arguments that are assumed, return the robot without them.
     """
     reading = _expand_xacro(data, path, surroundings, references)
     fails = any(problem.kind.is_before_ros for problem in reading.problems)
@@ -440,7 +440,7 @@ def _expand_xacro(
 ) -> Reading:
     """Return the robot that xacro makes of a file.
 
-    Where it cannot be expanded at all, returns what can be read of the text.
+    Where it cannot be expanded at all, return what can be read of the text.
 
     The folder that a build installs a package in is called differently in launch files and in
     xacro. A file that the launch file names there and that no build certainly installs stays as it

@@ -218,7 +218,7 @@ def _replaces_names(node: ast.ImportFrom) -> bool:
 def _bindings(nodes: Sequence[ast.AST]) -> tuple[Counter[str], dict[str, ast.expr]]:
     """Return how often statements bind or change each name with dots.
 
-    Also returns the expressions that are assigned.
+    Also return the expressions that are assigned.
     """
     counts, values = Counter[str](), dict[str, ast.expr]()
     for part in nodes:

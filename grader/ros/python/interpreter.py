@@ -218,7 +218,7 @@ class Interpreter(Evaluation):
         self.chosen = 0  # how many conditions are around the statement, which hold
 
     def run(self, code: Code) -> py.Scope:
-        """Evaluate a whole file and return the scope of its names. Never raises."""
+        """Evaluate a whole file and return the scope of its names. It never raises."""
         self.releases = code.releases
         try:
             self._block(code.tree.body, self.module)
@@ -233,7 +233,7 @@ class Interpreter(Evaluation):
         args: Sequence[py.Value] | None = (),
         named: Mapping[str, py.Value] = _NO_NAMES,
     ) -> py.Value:
-        """Return the value of a call of one of the file's functions. Never raises.
+        """Return the value of a call of one of the file's functions. It never raises.
 
         With `args` None, the arguments are unknown, and no error or doubt in the call counts: it
         may never happen.
@@ -443,7 +443,7 @@ class Interpreter(Evaluation):
     def _skip_branches(self, branches: Sequence[ast.stmt], scope: py.Scope) -> bool:
         """Make unknown what branches bind of which one runs; return False if they do more.
 
-        Also if they read a name that is not bound: one of them may fail.
+        It also returns False if they read a name that is not bound: one of them may fail.
         """
         names = _names_bound(branches)
         if names is None or not self._has_names(branches, scope):

@@ -113,7 +113,7 @@ def location_in(source: Source, position: Position) -> Location:
 def parse(data: bytes, path: str, releases: tuple[Release, ...] = ()) -> Code | SyntaxFault:
     """Parse the bytes of a Python file, as the newest Python of some releases does.
 
-    Never raises: what Python refuses, also for its depth, is a SyntaxFault.
+    It never raises: what Python refuses, also for its depth, is a SyntaxFault.
     """
     resolved = resolve_conflicts(data)
     try:

@@ -30,7 +30,8 @@ _BY_LETTERS = {folded(word): word for word in _WORDS}
 def gazebo_slips(root: XacroNode, named: Collection[str]) -> Iterator[Slip]:
     """Yield the tags in <gazebo> that differ from those of a sensor in their case or a separator.
 
-    And the attribute of <gazebo> that has the name of a link; `named` are all names in the files.
+    Also yield the attribute of <gazebo> that has the name of a link; `named` are all names in the
+    files.
     """
     for gazebo in walk(root):
         if gazebo.tag != "gazebo":

@@ -69,7 +69,7 @@ def _matching_points(
 ) -> tuple[Vector, Vector] | None:
     """Return where the first shape of a link is in the frame of both robots' base.
 
-    If the link has no shape, returns where its frame is.
+    If the link has no shape, return where its frame is.
     """
     try:
         posed_visuals = [

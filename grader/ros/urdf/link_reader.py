@@ -108,7 +108,7 @@ class Materials:
     ) -> tuple[Material | None, bool]:
         """Return the material that an element defines, if it does.
 
-        Also returns whether its colour is reported as a problem.
+        Also return whether its colour is reported as a problem.
         """
         inside = first_children(element)
         colour = inside.get("color")

@@ -1,10 +1,10 @@
 """The normal form of a robot.
 
-Equal for files that differ only in what nobody can see, and what a copy can change.
+It is equal for files that differ only in what nobody can see, and what a copy can change.
 
 What counts: every pose, shape, colour, mass, axis, limit, mimic and dynamics, the tree, and every
-name that something refers to. What does not: comments, white space, the order of elements, the way
-in which numbers are written, defaults written out, rotations of a cylinder or sphere within its
+name that something refers to. These do not count: comments, white space, the order of elements, the
+way in which numbers are written, defaults written out, rotations of a cylinder or sphere within its
 symmetry, shapes without size, the length of an axis, and axes and limits that ROS 2 does not use
 for a type of joint.
 """
@@ -184,7 +184,7 @@ class _Forms(NamedTuple):
     def _normalise_axis(self, joint: Joint) -> object:
         """Return the direction of an axis.
 
-        For one without a direction, returns what the file gives, and nothing for one without use.
+        For one without a direction, return what the file gives, and nothing for one without use.
         """
         if joint.type not in _TURNING:
             return ()

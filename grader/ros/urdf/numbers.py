@@ -147,7 +147,7 @@ def rgba(text: str) -> tuple[float, float, float, float] | None:
 def version_in(text: str) -> tuple[int, int] | None:
     """Return a robot's `version` as urdfdom's URDFVersion reads it, by C's strtol.
 
-    None for a text that it refuses.
+    It is None for a text that it refuses.
     """
     parsed = [re.fullmatch(_VERSION, piece) for piece in text.removesuffix(".").split(".")]
     values = [_strtol(match[1]) for match in parsed if match]

@@ -28,10 +28,10 @@ def penetration(
 ) -> float:
     """Return the penetration depth of two shapes in metres if it is more than `allowed`.
 
-    Otherwise returns 0.0.
+    Otherwise return 0.0.
 
-    Shapes that touch are separate. Off by less than 0.1 mm, or 1e-4 of the largest length where
-    that is more than 10 m. Raises UnknownShape for a mesh.
+    Shapes that touch are separate. The depth is off by less than 0.1 mm, or by less than 1e-4 of
+    the largest length where that is more than 10 m. Raises UnknownShape for a mesh.
     """
     limit = allowed + _ROUNDING
     reach = bounding_radius(a) + bounding_radius(b)

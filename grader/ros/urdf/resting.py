@@ -270,9 +270,9 @@ def _bound_size(body: _RestingBody) -> float:
 def _face_below(body: _RestingBody, up: Vector, size: float) -> Vector | None:
     """Return the normal, upward, of the face of the convex hull straight below the centre of mass.
 
-    None if there is no such face, or one that is very steep. This is portal refinement (Snethen,
-    XenoCollide, Game Programming Gems 7, 2008): a triangle of points around the line of the mass
-    goes down until no point of the hull is below it.
+    It is None if there is no such face, or one that is very steep. This is portal refinement
+    (Snethen, XenoCollide, Game Programming Gems 7, 2008): a triangle of points around the line of
+    the mass goes down until no point of the hull is below it.
     """
     x, y = level_directions(up)
     far = 4.0 * size

@@ -63,8 +63,8 @@ def support(geometry: Geometry, direction: Vector) -> Vector:
 
     Returns the middle of the farthest points if several tie.
 
-    Metres, in the shape's frame; the direction need not be unit, and a zero one gives the centre.
-    Raises UnknownShape for a mesh.
+    It is in metres, in the shape's frame; the direction need not be unit, and a zero one gives the
+    centre. Raises UnknownShape for a mesh.
     """
     x, y, z = direction
     tie = _TIE * max(abs(x), abs(y), abs(z))
@@ -169,14 +169,14 @@ class PlacedShape(NamedTuple):
 
         Returns the middle of the farthest points if several tie.
 
-        Metres, in the frame. Raises UnknownShape for a mesh.
+        It is in metres, in the frame. Raises UnknownShape for a mesh.
         """
         return self.pose.apply(support(self.geometry, self.pose.unrotate(direction)))
 
     def is_around(self, other: "PlacedShape") -> bool:
         """Return whether another shape is inside of this one, as far as its bounding box tells.
 
-        False where one is a mesh.
+        It is False where one is a mesh.
         """
         if isinstance(self.geometry, Mesh) or isinstance(other.geometry, Mesh):
             return False
@@ -192,7 +192,7 @@ class PlacedShape(NamedTuple):
 
         Those count that are beyond a tolerance.
 
-        None for shapes of different kinds, and for different meshes. Without `turned`, their
+        It is None for shapes of different kinds, and for different meshes. Without `turned`, their
         orientations do not count.
         """
         apart = hypot(*minus(self.pose.translation, other.pose.translation))

@@ -105,7 +105,7 @@ class StandingRobot:
     def find_odd_height(self) -> tuple[str, float]:
         """Return the named link whose lowest point is farthest from the level of the others.
 
-        The base is level. Also returns how far above it is, in metres.
+        The base is level. Also return how far above it is, in metres.
         """
         bottoms: dict[str, float] = {}
         for name, shape in self.body.shapes:

@@ -20,7 +20,7 @@ def find_travel(
 ) -> tuple[Vector, Literal[""]] | tuple[None, str]:
     """Return the direction in which a small positive rotation drives the base.
 
-    If the wheel does not roll, returns None and why.
+    If the wheel does not roll, return None and why.
 
     The direction is a unit vector in the base's frame, perpendicular to the unit vector `up`.
     Raises MissingElement, NotDecided or UnknownShape if it cannot be determined.

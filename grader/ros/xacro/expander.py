@@ -127,7 +127,7 @@ class Expander:
     def content(self, source: XacroNode, out: XacroNode, scopes: Scopes) -> None:
         """Expand the children of an element into another.
 
-        Omits what is refused or cannot be determined.
+        It omits what is refused or cannot be determined.
         """
         out.open = out.open or source.open
         for child in source.children:

@@ -331,7 +331,7 @@ def _read(
 ) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
     """Return the elements of a file, and what xacro refuses in it.
 
-    Also returns whether they are only what broken tags leave.
+    Also return whether they are only what broken tags leave.
     """
     path = text.path
     try:

@@ -360,7 +360,7 @@ class _Rewriter:
     ) -> tuple[_Written, XacroScope, str, str] | None:
         """Return the definition of the one name that gives a text, and its scope.
 
-        Also returns what it is and should be.
+        Also return what it is and should be.
         """
         match = _ALONE.fullmatch(text.text)
         before, after = (match["before"], match["after"]) if match else ("", "")

@@ -191,7 +191,7 @@ def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
 def _decode(data: bytes, budget: Budget) -> str:
     """Return the text of a file as UTF-8, which xacro assumes whatever the declaration says.
 
-    Charges its tags.
+    It charges its tags.
     """
     prefixes = data.count(b"xmlns") * data.count(b":") // 8
     budget.charge(

@@ -405,7 +405,7 @@ class _Repairer:
     def _robot_after(self, changes: list[_TextEdit], end: int) -> tuple[bytes, list[int]]:
         """Return the robot that is read after changes of the text before an offset.
 
-        Also returns where its tags are now.
+        Also return where its tags are now.
         """
         if self._robot is None:
             return b"", []

@@ -95,7 +95,7 @@ class _References:
     def at(self, offset: int) -> tuple[bytes, int]:
         """Return the bytes that the &# at this offset refers to.
 
-        Also returns how many bytes it takes itself.
+        Also return how many bytes it takes itself.
         """
         source = self._source
         if len(source) == offset + 2:
@@ -238,7 +238,7 @@ class Scan(NamedTuple):
 class MalformedTagError(Exception):
     """A tag that TinyXML2 rejects, with the offset of the error.
 
-    Also has the offset at which reading can go on.
+    It also has the offset at which reading can go on.
     """
 
     def __init__(self, message: str, offset: int, resume: int) -> None:

@@ -1,6 +1,6 @@
 """What runs after launch files are launched: nodes, their parameters, ends and transforms.
 
-What `ros2 node list`, `param dump`, `topic info --verbose` and `view_frames` would show.
+This is what `ros2 node list`, `param dump`, `topic info --verbose` and `view_frames` would show.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence

@@ -20,8 +20,8 @@ _MACRO = "xacro:macro"
 def offered_elements(before: str) -> Iterator[tuple[str, str]]:
     """Yield the names that may follow the text of a URDF up to a place, with what each is.
 
-    Elements behind `<`, attributes in a tag; nothing in a value or in text. A macro of xacro may
-    have what a robot has.
+    These are elements behind `<`, and attributes in a tag; there are none in a value or in text. A
+    macro of xacro may have what a robot has.
     """
     if _STARTED_TAG.search(before):
         parent = _element_around(before)

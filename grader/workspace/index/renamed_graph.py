@@ -74,7 +74,7 @@ def graph_under(
 ) -> Counter[_Row]:
     """Return the ends, nodes and transforms after each launch, with another name for some places.
 
-    Nothing where this takes too much work.
+    There are none where this takes too much work.
 
     Args:
         workspace: The packages and the robots.

@@ -82,7 +82,7 @@ class PathInFile(NamedTuple):
 
     It says whether the path is certainly looked for.
 
-    `is_needed`: whether a program certainly reads the file and never writes it; `is_output`:
+    `is_needed` says whether a program certainly reads the file and never writes it, and `is_output`
     whether an own node, which is given the path, may write it.
     """
 

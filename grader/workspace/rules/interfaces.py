@@ -1,6 +1,6 @@
 """Interfaces: the files of messages, services and actions, and the types that nodes use.
 
-Also what generates code of the files, and the fields that nodes use.
+What generates code of the files is here, too, and so are the fields that nodes use.
 """
 
 from collections.abc import Iterator, Sequence
@@ -146,7 +146,7 @@ def _types_of_fields(
 ) -> Iterator[Mismatch]:
     """Yield that nothing defines the type of a field.
 
-    Or CMakeLists.txt does not name the package of the type.
+    Otherwise yield that CMakeLists.txt does not name the package of the type.
     """
     for own_type in interfaces.types.values():
         for section in own_type.interface.sections:

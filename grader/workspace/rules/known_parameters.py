@@ -83,8 +83,8 @@ def _negative_lengths(given: GivenNode) -> set[Location]:
 def _given_nodes(workspace: Workspace) -> Iterator[GivenNode]:
     """Yield what nodes get.
 
-    First that of launch files, then of controllers, then in files of which no launch file of the
-    workspace says who gets them.
+    First comes that of launch files, then of controllers, then that in files of which no launch
+    file of the workspace says who gets them.
     """
     in_files: set[str] = set()  # the parameters of move_group that are said of their files
     for given in _limits_of_moveit(workspace):

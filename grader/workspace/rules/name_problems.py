@@ -102,8 +102,8 @@ def _with_one_for_a_manifest(
 def _without_repeated_packages(mismatches: Sequence[Mismatch]) -> Iterator[Mismatch]:
     """Yield mismatches without those that say of a package what another one says.
 
-    Of one that nothing has, that package.xml does not declare it; of a misspelt dependency that a
-    file uses, that rosdep does not know it.
+    Of a package that nothing has, it drops that package.xml does not declare it; of a misspelt
+    dependency that a file uses, it drops that rosdep does not know it.
     """
     absent = {mismatch.word for mismatch in mismatches if mismatch.rule.name == "package-exists"}
     misspelt: set[str] = set()

@@ -118,7 +118,8 @@ pluginlib_export_plugin_description_file(controller_interface plugins.xml)
 def _not_described(workspace: Workspace, described: Sequence[_DescribedClass]) -> Iterator[Fact]:
     """Yield the names of classes that their own package does not describe.
 
-    Only of a package that describes classes of the same kind, and makes no descriptions.
+    It is yielded only of a package that describes classes of the same kind, and makes no
+    descriptions.
     """
     for wanted in named_classes(workspace):
         prefix = re.split(r"/|::", wanted.name, maxsplit=1)[0]

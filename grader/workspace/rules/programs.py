@@ -98,7 +98,7 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
 def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Iterator[Fact]:
     """Yield that a package of the workspace does not have the program of a node.
 
-    Or Linux cannot execute the program.
+    If it has the program, yield that Linux cannot execute it.
     """
     yield Compared("programs")
     if owner.installation is not None and owner.installation.unread:

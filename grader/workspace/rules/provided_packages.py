@@ -113,7 +113,7 @@ def _wrong_key(workspace: Workspace, name: str, at: Location) -> Mismatch | None
         message = f"{no_key}, so rosdep install stops; did you mean {quoted(meant)}?"
         either = corrections(name, at, meant)
         return Mismatch(_ROSDEP_KEY, message, at, corrections=either, word=name)
-    if _is_of_family(name, own_names):
+    if _is_of_project(name, own_names):
         return None
     message = (
         f"{no_key}, and neither the workspace nor a release of ROS 2 ({released_date()}) has such "
@@ -122,7 +122,7 @@ def _wrong_key(workspace: Workspace, name: str, at: Location) -> Mismatch | None
     return Mismatch(_ROSDEP_KEY, message, at, is_certain=False, word=name)
 
 
-def _is_of_family(name: str, others: Sequence[str]) -> bool:
+def _is_of_project(name: str, others: Sequence[str]) -> bool:
     """Return whether a name begins as that of a package of the workspace: arm_msgs and arm_driver.
 
     Such a package is one of the same project, of which only a part is inspected.
@@ -168,7 +168,7 @@ def _near_key(workspace: Workspace, name: str) -> str | None:
 class _NamedPackage(NamedTuple):
     """A package that a file names, and where.
 
-    `is_compared`: whether the rule of files compares a similar name.
+    `is_compared` says whether the rule of files compares a similar name.
     """
 
     name: str

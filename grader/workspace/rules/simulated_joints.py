@@ -71,8 +71,8 @@ def generate_launch_description():
 def simulated_joint_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield launch files that create a robot with wheels in Gazebo without their positions.
 
-    Only if all that the launch file starts is known, and each robot has such joints. Where nothing
-    in the workspace publishes positions, the rule joint-states says that.
+    They are yielded only if all that the launch file starts is known, and each robot has such
+    joints. Where nothing in the workspace publishes positions, the rule joint-states says that.
     """
     moving: list[Joint] = []
     for robot in workspace.robots.known:

@@ -1,6 +1,6 @@
 """Rows of a bridge for which Gazebo runs no system, and odometry that no row takes to tf2.
 
-Only where all robots, models and worlds are read, and all systems in them are known.
+They are found only where all robots, models and worlds are read, and all systems in them are known.
 """
 
 from collections.abc import Collection, Iterator, Mapping

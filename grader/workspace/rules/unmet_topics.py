@@ -1,6 +1,7 @@
 """Topics whose publishers and subscriptions never meet: of other types, or of other names.
 
-Only where all of the code is read, as another program may be the partner that is missed.
+They are found only where all of the code is read, as another program may be the partner that is
+missed.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

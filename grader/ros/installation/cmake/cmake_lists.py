@@ -50,7 +50,7 @@ def read_cmake(
 ) -> Installation:
     """Evaluate the CMakeLists.txt of a package with these files, which package.xml gives this name.
 
-    Never raises.
+    It never raises.
     """
     source = Source(path, text)
     try:

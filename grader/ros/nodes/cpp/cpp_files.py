@@ -118,7 +118,7 @@ class CppFiles:
         return files, tuple(unread)
 
     def read(self, path: str) -> CppFile | _UnreadCpp:
-        """Return what a file declares, or why it is not read. Never raises."""
+        """Return what a file declares, or why it is not read. It never raises."""
         if path not in self._files:
             self._files[path] = self._read(path)
         return self._files[path]

@@ -41,7 +41,7 @@ class _Variables:
     def find_type(self, name: CppNode) -> str:
         """Return the type of a local variable or a member, as it is written.
 
-        Empty if it is not known.
+        It is empty if it is not known.
         """
         if name.text not in self._types:
             self._types[name.text] = self._read_type(name)

@@ -1,7 +1,7 @@
 """What C++ code asks of the content of messages.
 
-A time in their header that a synchroniser compares, and the encoding of images that cv_bridge
-makes and converts.
+This is a time in their header that a synchroniser compares, and the encoding of images that
+cv_bridge makes and converts.
 """
 
 import re

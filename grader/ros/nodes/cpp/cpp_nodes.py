@@ -102,7 +102,7 @@ _Fact = Endpoint | NodeParameter | Timer | Doubt | NodeFrame | NodeTransform
 
 
 def read_cpp_nodes(package: Package) -> PackageNodes:
-    """Return the nodes in the C++ files that a build of a package compiles. Never raises."""
+    """Return the nodes in the C++ files that a build of a package compiles. It never raises."""
     nodes: dict[Location, NodeFacts] = {}
     programs: list[NodeProgram] = []
     doubts: dict[Doubt, None] = {}

@@ -1,4 +1,4 @@
-"""What nodes in Python do wrong with actions and with the transforms that they look up."""
+"""What nodes in Python do wrong with actions."""
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
@@ -8,7 +8,7 @@ from grader.base.source import Location
 from grader.ros.nodes.message_uses import CodePart
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.python.constants import dotted
-from grader.ros.python.parse import AnyFunction, Code, every_node
+from grader.ros.python.parse import AnyFunction, Code
 from grader.ros.python.walking import walk
 
 # What sets the state of a goal: rclpy/rclpy/action/server.py of jazzy.
@@ -16,8 +16,6 @@ _CANCELS = "canceled"
 _ENDING_STATES = frozenset({"succeed", "abort", _CANCELS})
 # The fields of the answer that has the result of an action, and what each message has.
 _OF_RESULT = frozenset({"status", "result", "get_fields_and_field_types"})
-_BUFFERS = ("tf2_ros.Buffer", "tf2_ros.buffer.Buffer")
-_LOOKS_UP = frozenset({"lookup_transform", "can_transform", "transform", "lookup_transform_async"})
 
 
 class RegisteredGoal(NamedTuple):
@@ -288,38 +286,3 @@ def _wrong_fields(code: Code, function: AnyFunction) -> Iterator[CodeFault]:
 
 def _is_answer(node: ast.expr, answers: set[str]) -> bool:
     return isinstance(node, ast.Call) and not node.args and dotted(node.func) in answers
-
-
-def buffers_without_listener(code: Code, names: Mapping[str, str]) -> Iterator[CodeFault]:
-    """Yield the buffers that look up transforms, and that nothing fills.
-
-    `names` has the full names of what is imported. A buffer that anything is given may be filled.
-    """
-    if "set_transform" in code.source.text:
-        return
-    made: dict[str, list[ast.Call]] = {}
-    for node in every_node(code.tree):
-        match node:
-            case ast.Assign(targets=[ast.Name() | ast.Attribute() as to], value=ast.Call() as call):
-                first, dot, rest = dotted(call.func).partition(".")
-                if f"{names.get(first, first)}{dot}{rest}" in _BUFFERS:
-                    made.setdefault(dotted(to), []).append(call)
-    for name, calls in made.items():
-        if len(calls) == 1 and _is_only_asked(name, code):
-            message = f"no TransformListener fills {name}: it never has a transform"
-            yield CodeFault("buffer-listener", message, code.at(calls[0]))
-
-
-def _is_only_asked(name: str, code: Code) -> bool:
-    """Return whether code looks up transforms in a buffer and does nothing else with it."""
-    asked = others = 0
-    owners = set[ast.AST]()
-    for node in every_node(code.tree):
-        if isinstance(node, ast.Attribute) and dotted(node.value) == name:
-            owners.add(node.value)
-            asked += node.attr in _LOOKS_UP
-    for node in every_node(code.tree):
-        is_read = isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
-        if isinstance(node, ast.Name | ast.Attribute) and is_read and dotted(node) == name:
-            others += node not in owners
-    return asked > 0 and others == 0

@@ -24,7 +24,6 @@ from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.nodes.python.action_faults import (
     RegisteredGoal,
     answers_for_results,
-    buffers_without_listener,
     goals_without_state,
     loops_without_transforms,
     rejected_goals,
@@ -48,6 +47,7 @@ from grader.ros.nodes.python.node_constructors import early_uses
 from grader.ros.nodes.python.parameter_values import parameters_as_values
 from grader.ros.nodes.python.python_calls import WrongCall
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
+from grader.ros.nodes.python.transform_buffers import buffers_without_listener
 from grader.ros.nodes.python.undefined_names import undefined_names, wrong_imports
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import binds_unseen, constant_in, dotted, last_name
@@ -1013,7 +1013,7 @@ def _ends_without_value(
 ) -> Iterator[tuple[AnyFunction | ast.Return, bool]]:
     """Yield where a function ends without a value: a return, or the function itself for its end.
 
-    With each whether it certainly gets there on some path.
+    Each comes with whether it certainly gets there on some path.
     """
     for statement in _own_statements(function.body):
         if isinstance(statement, ast.Return) and _is_none(statement.value):

@@ -1,7 +1,7 @@
 """What Python code asks of the content of messages.
 
-A time in their header that a synchroniser compares, and the encoding of images that cv_bridge
-converts.
+This is a time in their header that a synchroniser compares, and the encoding of images that
+cv_bridge converts.
 """
 
 import ast

@@ -151,8 +151,8 @@ class _Signature(NamedTuple):
 def wrong_call(written: Written, function: str, releases: Sequence[Release]) -> WrongCall | None:
     """Return what is wrong with the arguments of a call in each of some releases.
 
-    `function` is a key of the table of calls. None where nothing is wrong, or where arguments are
-    unpacked.
+    `function` is a key of the table of calls. The result is None where nothing is wrong, or where
+    arguments are unpacked.
     """
     call = written.call
     is_unpacked = any(isinstance(argument, ast.Starred) for argument in call.args)

@@ -150,7 +150,7 @@ _Fact = Endpoint | NodeParameter | NodeFrame | NodeTransform | Timer | Doubt | _
 
 
 def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
-    """Return the nodes in the Python modules that a build of a package installs. Never raises.
+    """Return the nodes in the Python modules that a build of a package installs. It never raises.
 
     With `reads_meant`, an entry point that surely is misspelt creates the nodes of the one meant.
     """

@@ -44,7 +44,7 @@ _OF_OTHERS = ("Image", "Path")
 def undefined_names(code: Code) -> Iterator[CodeFault]:
     """Yield the names that are not defined, wherever they are used.
 
-    Also texts that are formatted with too little.
+    Texts that are formatted with too little are yielded, too.
     """
     from pyflakes.checker import Checker  # late: few commands read the code of nodes
 

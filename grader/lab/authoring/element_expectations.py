@@ -1,4 +1,4 @@
-"""The facts of the elements for simulators and controllers, which ROS 2 itself does not read."""
+"""Expectations of the elements for simulators and controllers, which ROS 2 itself does not read."""
 
 import re
 from collections import Counter
@@ -7,7 +7,14 @@ from math import isfinite
 from typing import Any
 
 from grader.base.text import enumerated
-from grader.lab.authoring.facts import CarriedFact, Fact, Facts, Omission, Solution, are_joints_free
+from grader.lab.authoring.expectations import (
+    CarriedExpectation,
+    Expectation,
+    Expectations,
+    Omission,
+    Solution,
+    are_joints_free,
+)
 from grader.ros.installation.places import is_of_one_machine
 from grader.ros.package.robot_file import Read, read_as_ros
 from grader.ros.package.trees import is_path, split_path
@@ -41,7 +48,7 @@ _INTERFACE = "command_interface/@name"
 _NAMED_BY = ("reference", "name", "filename", "type")
 _NAMED_FREELY = ("ros2_control", "transmission")
 _OF_ARGUMENTS = ("urdf_loads", "files names_agree", "arguments names_agree")
-# The paths of values that are details: see `Fact.is_detail`.
+# The paths of values that are details: see `Expectation.is_detail`.
 _DETAIL = re.compile(
     r"\A(gazebo/sensor/(.*/)?(@name|\w*frame_id|always_on|visualize|format|horizontal_fov"
     r"|(noise|clip)(/.*)?)"
@@ -54,7 +61,7 @@ _CONDITIONS = re.compile(r"\[[^\[\]]*\]")
 _Values = dict[str, Any]
 
 
-def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
+def element_expectations(solution: Solution, causes: Collection[str]) -> Expectations:
     """Yield the values in each element for simulators and controllers.
 
     `causes` change the arguments of xacro.
@@ -72,7 +79,7 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
     joints.update(selectors.values())
     agreement = read_agreement(solution.submission.workspace)
 
-    def asked(entry: Fact | Omission) -> Fact | Omission:
+    def asked(entry: Expectation | Omission) -> Expectation | Omission:
         if isinstance(entry, Omission):
             return entry
         if agreement.holds("topics"):
@@ -95,52 +102,54 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
             others = [
                 one.arguments
                 for one in without
-                if isinstance(one, Fact) and one.words == entry.words
+                if isinstance(one, Expectation) and one.words == entry.words
             ]
             other = others[met[entry.words] - 1] if len(others) >= met[entry.words] else None
             carried += _carried_from_launch(entry, other, (*_OF_ARGUMENTS, *causes))
         yield entry._replace(carried=tuple(carried))
 
 
-def details_apart(facts: Facts, robot: Configuration) -> Facts:
-    """Yield facts, of those about an element first all but its details, then these."""
+def details_apart(expectations: Expectations, robot: Configuration) -> Expectations:
+    """Yield expectations, of those about an element first all but its details, then these."""
     mimics: set[str] = set()
     for joint in robot.robot.joints:
         if joint.mimic is not None:
             mimics.update((joint.name, f"{JOINT_OF}{joint.child}"))
-    for fact in facts:
-        if isinstance(fact, Fact) and fact.check == "entry_is":
-            yield from _with_details_apart(fact, mimics)
+    for expectation in expectations:
+        if isinstance(expectation, Expectation) and expectation.check == "entry_is":
+            yield from _with_details_apart(expectation, mimics)
         else:
-            yield fact
+            yield expectation
 
 
-def _with_details_apart(fact: Fact, mimics: Collection[str]) -> Iterator[Fact]:
-    """Yield a fact without details, if something else is left of it, and its details."""
-    values = fact.arguments.get("values", {})
+def _with_details_apart(expectation: Expectation, mimics: Collection[str]) -> Iterator[Expectation]:
+    """Yield an expectation without details, if something else is left of it, and its details."""
+    values = expectation.arguments.get("values", {})
     details = [_DETAIL]
     if values.get("@name") in mimics:
         details.append(_DETAIL_OF_MIMIC)
-    kept = _without_details(fact.arguments, details)
-    if kept == fact.arguments:
-        yield fact
+    kept = _without_details(expectation.arguments, details)
+    if kept == expectation.arguments:
+        yield expectation
         return
     if kept.get("values"):
         carried = []
-        for one in fact.carried:
+        for one in expectation.carried:
             if "at" in one.arguments:
                 weaker = _without_details(one.arguments, details)
                 carried.append(one._replace(arguments=weaker))
             else:
                 carried.append(one)
-        main = fact._replace(arguments=kept, carried=tuple(carried))
+        main = expectation._replace(arguments=kept, carried=tuple(carried))
         yield main._replace(title=_title(main))
     rest = {}
     for key, value in values.items():
         if key == "@name" or key not in kept.get("values", {}):
             rest[key] = value
-    apart = fact._replace(
-        arguments=_entry(fact.arguments["at"], rest), words=f"{fact.words} details", carried=()
+    apart = expectation._replace(
+        arguments=_entry(expectation.arguments["at"], rest),
+        words=f"{expectation.words} details",
+        carried=(),
     )
     yield apart._replace(title=_title(apart), is_detail=True)
 
@@ -159,35 +168,35 @@ def _without_details(
     return _entry(arguments["at"], values)
 
 
-def _without_topics(fact: Fact) -> Fact:
-    """Return a fact without the names of topics, which need only agree."""
+def _without_topics(expectation: Expectation) -> Expectation:
+    """Return an expectation without the names of topics, which need only agree."""
     values = {
         path: value
-        for path, value in fact.arguments.get("values", {}).items()
+        for path, value in expectation.arguments.get("values", {}).items()
         if not path.endswith("topic")
     }
-    return fact._replace(arguments=_entry(fact.arguments["at"], values))
+    return expectation._replace(arguments=_entry(expectation.arguments["at"], values))
 
 
-def _without_files(fact: Fact) -> Fact:
-    """Return a fact without the paths of files, whose names are free.
+def _without_files(expectation: Expectation) -> Expectation:
+    """Return an expectation without the paths of files, whose names are free.
 
     A build has to install them.
     """
     values = {
         path: value
-        for path, value in fact.arguments.get("values", {}).items()
+        for path, value in expectation.arguments.get("values", {}).items()
         if not (isinstance(value, str) and _FILE.search(value))
     }
-    return fact._replace(arguments=_entry(fact.arguments["at"], values))
+    return expectation._replace(arguments=_entry(expectation.arguments["at"], values))
 
 
-def _by_links(fact: Fact, selectors: Mapping[str, str]) -> Fact:
-    """Return a fact with joints named by the links that they hold.
+def _by_links(expectation: Expectation, selectors: Mapping[str, str]) -> Expectation:
+    """Return an expectation with joints named by the links that they hold.
 
     `selectors` has these by the names of joints.
     """
-    at, values = fact.arguments["at"], fact.arguments.get("values", {})
+    at, values = expectation.arguments["at"], expectation.arguments.get("values", {})
     is_joint, is_of_system = at.endswith("/joint"), at.startswith("ros2_control")
     at = _REFERENCE.sub(
         lambda reference: f"[{reference[1]}='{selectors.get(reference[2], reference[2])}']", at
@@ -200,26 +209,26 @@ def _by_links(fact: Fact, selectors: Mapping[str, str]) -> Fact:
             return [selectors.get(name, name) for name in value]
         return selectors.get(value, value)
 
-    return fact._replace(
+    return expectation._replace(
         arguments=_entry(at, {key: named(key, value) for key, value in values.items()})
     )
 
 
 def _carried_from_names(
-    fact: Fact, joints: Collection[str], links: Collection[str]
-) -> Iterator[CarriedFact]:
-    """Yield what counts instead of a fact if names of joints or links are wrong."""
-    without_links = _weakened(fact.arguments, links)
+    expectation: Expectation, joints: Collection[str], links: Collection[str]
+) -> Iterator[CarriedExpectation]:
+    """Yield what counts instead of an expectation if names of joints or links are wrong."""
+    without_links = _weakened(expectation.arguments, links)
     weaker = _weakened(without_links, joints)
-    if weaker != fact.arguments:
+    if weaker != expectation.arguments:
         of_joints = ("joints_named", "controllers names_agree") if weaker != without_links else ()
-        yield CarriedFact((*of_joints, "frames names_agree"), fact.check, weaker)
+        yield CarriedExpectation((*of_joints, "frames names_agree"), expectation.check, weaker)
 
 
 def _root_without_launch_files(solution: Solution) -> Element | None:
     """Return the <robot> if no launch file gives arguments to xacro.
 
-    None where there is no robot.
+    It is None where there is no robot.
     """
     urdf, submission = solution.submission.urdf, solution.submission
     if not isinstance(urdf, Read) or not urdf.is_expanded:
@@ -230,19 +239,21 @@ def _root_without_launch_files(solution: Solution) -> Element | None:
 
 
 def _carried_from_launch(
-    fact: Fact, other: Mapping[str, Any] | None, causes: tuple[str, ...]
-) -> list[CarriedFact]:
-    """Return what counts instead of a fact if launch files give xacro no arguments.
+    expectation: Expectation, other: Mapping[str, Any] | None, causes: tuple[str, ...]
+) -> list[CarriedExpectation]:
+    """Return what counts instead of an expectation if launch files give xacro no arguments.
 
     This is what stays true without them.
     """
-    if other == fact.arguments:
+    if other == expectation.arguments:
         return []
     if other is None:
-        return [CarriedFact(causes, "urdf_loads")]
-    values, others = fact.arguments.get("values", {}), other.get("values", {})
+        return [CarriedExpectation(causes, "urdf_loads")]
+    values, others = expectation.arguments.get("values", {}), other.get("values", {})
     same = {key: value for key, value in values.items() if others.get(key) == value}
-    return [CarriedFact(causes, fact.check, _entry(fact.arguments["at"], same))]
+    return [
+        CarriedExpectation(causes, expectation.check, _entry(expectation.arguments["at"], same))
+    ]
 
 
 def _weakened(arguments: Mapping[str, Any], names: Collection[str]) -> Mapping[str, Any]:
@@ -282,10 +293,10 @@ def _entry(at: str, values: Mapping[str, Any]) -> Mapping[str, Any]:
     return {"at": at, "values": values}
 
 
-def _title(fact: Fact) -> str:
+def _title(expectation: Expectation) -> str:
     """Return what a criterion asks of an element, in a sentence that names its joint or link."""
-    steps = split_path(fact.arguments["at"], is_xml=True)
-    values = dict(fact.arguments.get("values", {}))
+    steps = split_path(expectation.arguments["at"], is_xml=True)
+    values = dict(expectation.arguments.get("values", {}))
     outer = f"<{steps[0].name}>"
     subjects = [value for key, value in steps[0].conditions if key in _SUBJECTS]
     if subjects:
@@ -326,7 +337,7 @@ def _value_words(value: Any) -> str:
     return _subject_text(text) if text.startswith(JOINT_OF) else text
 
 
-def _entries(root: Element, covered: Collection[str]) -> Facts:
+def _entries(root: Element, covered: Collection[str]) -> Expectations:
     """Yield the values in each element, or why it is omitted.
 
     The interfaces that are `covered` are not among them.
@@ -345,7 +356,7 @@ def _entries(root: Element, covered: Collection[str]) -> Facts:
             if (read_name(element), path) == ("ros2_control", "joint"):
                 _drop_covered(values, covered)
             if is_path(at):
-                yield Fact(about, "entry_is", _entry(at, values), label)
+                yield Expectation(about, "entry_is", _entry(at, values), label)
             else:
                 yield Omission(label, "a path cannot name it")
 

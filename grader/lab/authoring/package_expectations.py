@@ -1,4 +1,4 @@
-"""The facts of the packages of a reference.
+"""The expectations of the packages of a reference.
 
 They are about files, builds, launch and RViz files, names and parameters.
 """
@@ -12,15 +12,15 @@ from typing import Any
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated, first_lines
 from grader.base.toml_file import toml_literal
-from grader.lab.authoring.facts import (
-    CarriedFact,
-    Fact,
-    Facts,
+from grader.lab.authoring.expectations import (
+    CarriedExpectation,
+    Expectation,
+    Expectations,
     Omission,
     Solution,
     are_joints_free,
 )
-from grader.lab.authoring.graph_facts import LaunchConnections
+from grader.lab.authoring.graph_expectations import LaunchConnections
 from grader.lab.checks.parameters import measures
 from grader.lab.checks.started_nodes import LIFECYCLE_MANAGER, managed_nodes
 from grader.lab.submission.edited import content
@@ -74,7 +74,7 @@ _ODD: Mapping[Family, tuple[str, str]] = {
     "values": ("{} in what files say of the robot", "number"),
     "transforms": ("{} in the transforms that are published", "fault"),
 }
-# Where one mistake is of two families, by the words of the facts that pay for it.
+# Where one mistake is of two families, by the words of the expectations that pay for it.
 _SAME_PLACE: Mapping[Family, Sequence[tuple[tuple[str, ...], tuple[str, ...]]]] = {
     "files": [(("urdf_loads",), ("robot",))],
     "dependencies": [
@@ -133,24 +133,26 @@ _MAX_TITLE, _MAX_IN_TITLE = 95, 3  # characters; names
 _MAX_ODD = 10  # mistakes of one family
 
 
-def package_facts(submission: Submission) -> Facts:
+def package_expectations(submission: Submission) -> Expectations:
     """Yield what may be true of the packages that are graded, first of the main one."""
     agreement = read_agreement(submission.workspace) if submission.lab_packages else None
     named = agreement.files if agreement is not None and agreement.holds("files") else frozenset()
     for package, prefix in _packages(submission):
-        facts = _list_package_facts(submission, package, named, prefix)
+        expectations = _list_package_expectations(submission, package, named, prefix)
         about = f"{_THE_PACKAGE} {package.name}" if prefix else _THE_PACKAGE
         of = package.name if prefix else ""
-        for fact in facts:
-            yield fact._replace(about=about, package=of, words=f"{prefix}{fact.words}")
-    yield from _warning_facts(submission)
-    yield from _simulation_facts(submission)
-    yield from _lookup_facts(submission)
-    yield from _callback_facts(submission)
-    yield from _passed_facts(submission)
+        for expectation in expectations:
+            yield expectation._replace(
+                about=about, package=of, words=f"{prefix}{expectation.words}"
+            )
+    yield from _warning_expectations(submission)
+    yield from _simulation_expectations(submission)
+    yield from _lookup_expectations(submission)
+    yield from _callback_expectations(submission)
+    yield from _passed_expectations(submission)
 
 
-def _warning_facts(submission: Submission) -> Iterator[Fact]:
+def _warning_expectations(submission: Submission) -> Iterator[Expectation]:
     """Yield that there are no warnings of what certainly does not work."""
     codes = submission.workspace.code.by_package.values()
     kinds = {end.kind for code in codes for node in code.nodes for end in node.endpoints}
@@ -160,38 +162,38 @@ def _warning_facts(submission: Submission) -> Iterator[Fact]:
         for path in package.tree.files
     )
     if has_cpp:
-        fact = _package_fact("without_problems", "targets", problems=[*_OF_TARGETS])
-        yield fact._replace(
+        expectation = _package_expectation("without_problems", "targets", problems=[*_OF_TARGETS])
+        yield expectation._replace(
             title="the targets of builds find their headers and libraries, and these are installed",
             carried=_after(submission, *_builds(submission)),
         )
     if "action server" in kinds:
-        fact = _package_fact("without_problems", "goals", problems=[*_OF_GOALS])
-        yield fact._replace(
+        expectation = _package_expectation("without_problems", "goals", problems=[*_OF_GOALS])
+        yield expectation._replace(
             title="each goal of an action ends, and gets a state",
             about=_THE_NAMES,
             carried=_after(submission, *_OF_CODE),
         )
 
 
-def _after(submission: Submission, *causes: str) -> tuple[CarriedFact, ...]:
-    """Return what counts instead of a fact if others fail: that there is a package."""
+def _after(submission: Submission, *causes: str) -> tuple[CarriedExpectation, ...]:
+    """Return what counts instead of an expectation if others fail: that there is a package."""
     if submission.package is None:
         return ()
-    return (CarriedFact(causes, "package_found", {"name": submission.package.name}),)
+    return (CarriedExpectation(causes, "package_found", {"name": submission.package.name}),)
 
 
-def _simulation_facts(submission: Submission) -> Iterator[Fact]:
+def _simulation_expectations(submission: Submission) -> Iterator[Expectation]:
     """Yield which systems the world has that is launched."""
     worlds = started_worlds(submission.workspace)
     systems = sorted(worlds.systems) if worlds.files else []
     if systems:
-        fact = _package_fact("world_has", systems=systems)
+        expectation = _package_expectation("world_has", systems=systems)
         title = f"the world has {enumerated(systems, _MAX_IN_TITLE)}"
-        yield fact._replace(title=title, about=_THE_NAMES)
+        yield expectation._replace(title=title, about=_THE_NAMES)
 
 
-def _lookup_facts(submission: Submission) -> Iterator[Fact]:
+def _lookup_expectations(submission: Submission) -> Iterator[Expectation]:
     """Yield the transforms that nodes look up, where both frames are known."""
     seen = set()
     lookups, _ = looked_up_transforms(submission.workspace)
@@ -201,29 +203,33 @@ def _lookup_facts(submission: Submission) -> Iterator[Fact]:
             seen.add(frames)
             target, source = frames
             label = f"{target} {source}"
-            fact = _package_fact("looks_up", label, target=target, source=source)
+            expectation = _package_expectation("looks_up", label, target=target, source=source)
             title = f"a node looks up the pose of {source} in {target}"
             if lookup.inverts != "no":
-                fact = fact._replace(arguments={**fact.arguments, "either_way": True})
+                expectation = expectation._replace(
+                    arguments={**expectation.arguments, "either_way": True}
+                )
                 title += ", or its inverse"
-            yield fact._replace(title=title, about=_THE_NAMES, carried=_after_names(submission))
+            yield expectation._replace(
+                title=title, about=_THE_NAMES, carried=_after_names(submission)
+            )
 
 
-def _callback_facts(submission: Submission) -> Iterator[Fact]:
+def _callback_expectations(submission: Submission) -> Iterator[Expectation]:
     """Yield that a node is told of its parameters, or refuses values of them."""
     callbacks = parameter_callbacks(submission.workspace)
     carried = _after(submission, *_builds(submission), *_OF_CODE)
     if callbacks.refuses is not None:
-        fact = _package_fact("takes_parameters", "refused", refuses=True)
+        expectation = _package_expectation("takes_parameters", "refused", refuses=True)
         title = "a node refuses values of its parameters"
-        yield fact._replace(title=title, about=_THE_NAMES, carried=carried)
+        yield expectation._replace(title=title, about=_THE_NAMES, carried=carried)
     elif callbacks.told is not None:
-        fact = _package_fact("takes_parameters", "set")
+        expectation = _package_expectation("takes_parameters", "set")
         title = "a node is told when its parameters are set"
-        yield fact._replace(title=title, about=_THE_NAMES, carried=carried)
+        yield expectation._replace(title=title, about=_THE_NAMES, carried=carried)
 
 
-def _passed_facts(submission: Submission) -> Iterator[Fact]:
+def _passed_expectations(submission: Submission) -> Iterator[Expectation]:
     """Yield the parameters that nodes get by arguments that launch files pass to others.
 
     What an argument does is asked, and not its name: a submission may divide its launch files in
@@ -233,12 +239,12 @@ def _passed_facts(submission: Submission) -> Iterator[Fact]:
     for package in submission.lab_packages.values():
         for path in package.launch_files:
             passed += _changed_by_passing(submission, package.launch(path))
-    for fact in value_facts(submission):
-        given = fact.arguments["parameter"], fact.arguments["value"]
+    for expectation in value_expectations(submission):
+        given = expectation.arguments["parameter"], expectation.arguments["value"]
         if given in passed:
-            arguments = {**fact.arguments, "where_given": True}
+            arguments = {**expectation.arguments, "where_given": True}
             arguments.pop("or_default", None)
-            yield fact._replace(about=_THE_NAMES, arguments=arguments)
+            yield expectation._replace(about=_THE_NAMES, arguments=arguments)
 
 
 def _changed_by_passing(submission: Submission, launch: Launch) -> Iterator[tuple[str, Any]]:
@@ -271,7 +277,7 @@ def _list_parameters(node: StartedNode) -> dict[str, Any]:
     return values
 
 
-def _after_names(submission: Submission) -> tuple[CarriedFact, ...]:
+def _after_names(submission: Submission) -> tuple[CarriedExpectation, ...]:
     """Return what counts instead of what nodes do, if they do not run or get no parameters."""
     causes = (*_builds(submission), *_OF_PARAMETERS, *_OF_CODE, *words_of_launches(submission))
     return _after(submission, *causes)
@@ -280,7 +286,7 @@ def _after_names(submission: Submission) -> tuple[CarriedFact, ...]:
 def _packages(submission: Submission) -> Iterator[tuple[Package, str]]:
     """Yield the packages, the main one first.
 
-    Each comes with what the words of its facts begin with.
+    Each comes with what the words of its expectations begin with.
     """
     for package in sorted(
         submission.lab_packages.values(),
@@ -305,28 +311,30 @@ def _builds(submission: Submission) -> tuple[str, ...]:
     return tuple(f"{prefix}setup_imports" for _, prefix in _packages(submission))
 
 
-def _list_package_facts(
+def _list_package_expectations(
     submission: Submission, package: Package, named: Collection[str], prefix: str
-) -> Iterator[Fact]:
+) -> Iterator[Expectation]:
     """Yield what may be true of a package.
 
-    That the files are installed which are `named` somewhere is a fact about names.
+    That the files are installed which are `named` somewhere is an expectation about names.
     """
     path = submission.path or ""
-    yield _package_fact("package_found", name=package.name)
+    yield _package_expectation("package_found", name=package.name)
     if package.manifest is not None:
-        of_type = _package_fact("package_type")
+        of_type = _package_expectation("package_type")
         yield of_type._replace(title="the build type in package.xml is that of the package's files")
-    yield _package_fact("setup_imports")._replace(title="`colcon build` of the package succeeds")
+    yield _package_expectation("setup_imports")._replace(
+        title="`colcon build` of the package succeeds"
+    )
     yield from _installs(
         package, path.removeprefix(package.path("")) if package.holds(path) else "", named
     )
     included = _included_launches(submission)
     for launch in (file for file in package.launch_files if not file.startswith("test/")):
         is_part = package.path(launch) in included
-        for fact in _launch_facts(submission, package, launch, prefix):
-            yield fact._replace(is_detail=fact.is_detail or is_part)
-    yield from _rviz_facts(package)
+        for expectation in _launch_expectations(submission, package, launch, prefix):
+            yield expectation._replace(is_detail=expectation.is_detail or is_part)
+    yield from _rviz_expectations(package)
 
 
 def _included_launches(submission: Submission) -> set[str]:
@@ -347,7 +355,7 @@ def _included_launches(submission: Submission) -> set[str]:
     return paths
 
 
-def measure_facts(solution: Solution) -> Iterator[Fact]:
+def measure_expectations(solution: Solution) -> Iterator[Expectation]:
     """Yield the parameters of nodes that are measures of the robot.
 
     A measure is a radius in the robot, or a distance between two links.
@@ -373,16 +381,16 @@ def measure_facts(solution: Solution) -> Iterator[Fact]:
         )
         if (fitting := next(fits, None)) is not None:
             of = enumerated([repr(link) for link in fitting])
-            fact = _parameter_fact(node, name, measure=measure, links=[*fitting])
+            expectation = _parameter_expectation(node, name, measure=measure, links=[*fitting])
             known = [f"{link} {check}" for link in fitting for check in _MEASURING]
-            same = CarriedFact(
+            same = CarriedExpectation(
                 (*known, _MOTION), "parameter_is", {"node": node, "parameter": name, "value": value}
             )
             title = f"the parameter {name} of {node} is the {measure} of {of} in the robot"
-            yield fact._replace(title=title, carried=(*fact.carried, same))
+            yield expectation._replace(title=title, carried=(*expectation.carried, same))
 
 
-def naming_facts(solution: Solution) -> Iterator[Fact]:
+def naming_expectations(solution: Solution) -> Iterator[Expectation]:
     """Yield the parameters of nodes that name joints or links of the robot.
 
     A node without the parameter passes, as a node may have another name, or a default.
@@ -400,10 +408,10 @@ def naming_facts(solution: Solution) -> Iterator[Fact]:
         meant = [names[word] for word in items]
         asked = {"has": meant} if isinstance(value, list) else {"value": meant[0]}
         shown = enumerated([repr(word) for word in items], _MAX_IN_TITLE)
-        fact = _parameter_fact(node, name, **asked, where_given=True)
-        elsewhere = CarriedFact(_OF_NAMING, "package_found", {"name": main})
+        expectation = _parameter_expectation(node, name, **asked, where_given=True)
+        elsewhere = CarriedExpectation(_OF_NAMING, "package_found", {"name": main})
         title = f"the parameter {name} of {node} names {shown}"
-        yield fact._replace(title=title, carried=(elsewhere,))
+        yield expectation._replace(title=title, carried=(elsewhere,))
 
 
 def _names_in_rubric(solution: Solution) -> dict[str, str]:
@@ -417,7 +425,7 @@ def _names_in_rubric(solution: Solution) -> dict[str, str]:
     return names
 
 
-def value_facts(submission: Submission) -> Iterator[Fact]:
+def value_expectations(submission: Submission) -> Iterator[Expectation]:
     """Yield the values of parameters that nodes get, as files and launch files write them.
 
     A node without a parameter passes if its default is the same value.
@@ -433,11 +441,15 @@ def value_facts(submission: Submission) -> Iterator[Fact]:
         ):
             continue
         title = f"the parameter {name} of {node} is {toml_literal(value)}"
-        fact = _parameter_fact(node, name, value=value)._replace(about=node, title=title)
+        expectation = _parameter_expectation(node, name, value=value)._replace(
+            about=node, title=title
+        )
         default = submission.default_value(node, name)
         if default is not None and repr(default.value) == repr(value):
-            fact = fact._replace(arguments={**fact.arguments, "or_default": True})
-        yield fact
+            expectation = expectation._replace(
+                arguments={**expectation.arguments, "or_default": True}
+            )
+        yield expectation
 
 
 def _given(submission: Submission) -> Iterator[tuple[str, str, Any]]:
@@ -452,21 +464,23 @@ def _given(submission: Submission) -> Iterator[tuple[str, str, Any]]:
             yield node, name, parameter.value
 
 
-def _parameter_fact(node: str, name: str, **arguments: Any) -> Fact:
-    """Return a fact about a parameter.
+def _parameter_expectation(node: str, name: str, **arguments: Any) -> Expectation:
+    """Return an expectation about a parameter.
 
     It costs nothing if a mistake of names keeps the parameter from the node.
     """
     where_given = {"node": node, "parameter": name, **arguments, "where_given": True}
-    carried = (CarriedFact(_OF_PARAMETERS, "parameter_is", where_given),)
-    fact = _package_fact("parameter_is", f"{node} {name}", node=node, parameter=name, **arguments)
-    return fact._replace(about=_THE_NAMES, carried=carried)
+    carried = (CarriedExpectation(_OF_PARAMETERS, "parameter_is", where_given),)
+    expectation = _package_expectation(
+        "parameter_is", f"{node} {name}", node=node, parameter=name, **arguments
+    )
+    return expectation._replace(about=_THE_NAMES, carried=carried)
 
 
 def _sizes_meant(name: str, links: Sequence[str]) -> tuple[str, Iterable[tuple[str, ...]]] | None:
     """Return what a parameter measures by its name, and of which links it may be.
 
-    None for any other parameter.
+    It is None for any other parameter.
     """
     if "radius" in name:
         return "radius", ((link,) for link in links)
@@ -484,28 +498,32 @@ def _is_measured(robot: Configuration, measure: str, links: tuple[str, ...], val
         return False
 
 
-def name_facts(submission: Submission) -> Facts:
+def name_expectations(submission: Submission) -> Expectations:
     """Yield that the names of each family that the packages use agree, or what is odd in them."""
     if submission.package is None:
         return
     agreement = read_agreement(submission.workspace)
-    unbuilt = CarriedFact(_builds(submission), "package_found", {"name": submission.package.name})
+    unbuilt = CarriedExpectation(
+        _builds(submission), "package_found", {"name": submission.package.name}
+    )
     for family in (known_family for known_family in FAMILIES if known_family in agreement.families):
-        fact = _package_fact("names_agree", family, of=family)
-        carried: tuple[CarriedFact, ...] = (unbuilt,) if family in _OF_BUILDS else ()
+        expectation = _package_expectation("names_agree", family, of=family)
+        carried: tuple[CarriedExpectation, ...] = (unbuilt,) if family in _OF_BUILDS else ()
         if family == "values":
             carried = (unbuilt._replace(causes=_measured_words(submission)),)
         for causes, places in _SAME_PLACE.get(family, ()):
             elsewhere = {"of": family, "not_at": [*places]}
-            carried += (CarriedFact(causes, "names_agree", elsewhere),)
-        fact = fact._replace(about=_THE_NAMES, title=_NAME_TITLES[family], carried=carried)
-        yield _odd(submission, family, fact) or fact
+            carried += (CarriedExpectation(causes, "names_agree", elsewhere),)
+        expectation = expectation._replace(
+            about=_THE_NAMES, title=_NAME_TITLES[family], carried=carried
+        )
+        yield _odd(submission, family, expectation) or expectation
 
 
 def _measured_words(submission: Submission) -> tuple[str, ...]:
     """Return the words of the parameters that may be measures of the robot.
 
-    Each of these is a fact of its own.
+    Each of these is an expectation of its own.
     """
     words = []
     for node, name, _ in _given(submission):
@@ -514,10 +532,10 @@ def _measured_words(submission: Submission) -> tuple[str, ...]:
     return tuple(words)
 
 
-def _odd(submission: Submission, family: Family, fact: Fact) -> Omission | None:
+def _odd(submission: Submission, family: Family, expectation: Expectation) -> Omission | None:
     """Return what certainly does not agree in a family, in one line; None if nothing does not.
 
-    It has the fact that would be a criterion of the family.
+    It has the expectation that would be a criterion of the family.
     """
     mismatches = wrong_names(submission.workspace, family, submission.lab_packages.values())
     wrong = {mismatch.message: mismatch for mismatch in mismatches}
@@ -530,17 +548,17 @@ def _odd(submission: Submission, family: Family, fact: Fact) -> Omission | None:
         f"{text.format(counted(len(wrong), noun))}: {faults}; correct the reference and draft "
         "again, or use the criterion among the comments"
     )
-    return Omission(f"{family} names_agree", more, fact)
+    return Omission(f"{family} names_agree", more, expectation)
 
 
-def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:
-    return Fact(_THE_PACKAGE, check, arguments, f"{label} {check}".strip(), package="")
+def _package_expectation(check: str, label: str = "", **arguments: Any) -> Expectation:
+    return Expectation(_THE_PACKAGE, check, arguments, f"{label} {check}".strip(), package="")
 
 
-def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[Fact]:
+def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[Expectation]:
     """Yield that a build installs the URDF, the RViz files, and a file of each other ending."""
     installed = []
-    elsewhere = set()  # what other facts are about
+    elsewhere = set()  # what other expectations are about
     for target, path in package.installed.items():
         if not target.startswith(package.share):
             continue
@@ -552,18 +570,20 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
     named_files += [("rviz", path) for path in package.rviz_files if path not in elsewhere]
     for kind, path in named_files:
         name = posixpath.basename(path)
-        yield _package_fact(
+        yield _package_expectation(
             "build_installs", name, kind=kind, name=name, despite_errors=True
         )._replace(title=f"a build installs {name}")
-    yield from _install_facts(package, rest, {posixpath.splitext(file)[1] for file in elsewhere})
+    yield from _install_expectations(
+        package, rest, {posixpath.splitext(file)[1] for file in elsewhere}
+    )
 
 
-def _install_facts(
+def _install_expectations(
     package: Package, paths: Sequence[str], known: Collection[str]
-) -> Iterator[Fact]:
+) -> Iterator[Expectation]:
     """Yield that a build installs a file of each ending, from whatever folder.
 
-    Not of the `known` endings, of which others are installed anyway.
+    The `known` endings, of which others are installed anyway, are not among these.
     """
     endings: dict[str, None] = {}
     for path in paths:
@@ -571,17 +591,23 @@ def _install_facts(
         is_own_kind = path in package.launch_files or path.endswith(_OWN_KINDS)
         if posixpath.dirname(path) not in ("", "resource") and not is_own_kind and ending:
             endings[ending] = None
-    with_named = (CarriedFact(("files names_agree",), "package_found", {"name": package.name}),)
+    with_named = (
+        CarriedExpectation(("files names_agree",), "package_found", {"name": package.name}),
+    )
     for ending in endings:
         if ending not in known:
             pattern = f"*{ending}"
-            fact = _package_fact("installs_files", pattern, files=[pattern], despite_errors=True)
-            yield fact._replace(title=f"a build installs a {ending} file", carried=with_named)
+            expectation = _package_expectation(
+                "installs_files", pattern, files=[pattern], despite_errors=True
+            )
+            yield expectation._replace(
+                title=f"a build installs a {ending} file", carried=with_named
+            )
 
 
-def _launch_facts(
+def _launch_expectations(
     submission: Submission, package: Package, path: str, prefix: str
-) -> Iterator[Fact]:
+) -> Iterator[Expectation]:
     """Yield what may be true of a launch file.
 
     It costs nothing if the file starts nothing by a mistake of others.
@@ -590,9 +616,9 @@ def _launch_facts(
     included = {posixpath.basename(file.path) for file in launch.passed} - {name}
     causes = (*_builds(submission), *_STOPPING, *words_of_launches(submission, included))
     installed = {"kind": "launch", "name": name, "despite_errors": True}
-    there = CarriedFact(causes, "build_installs", installed)
+    there = CarriedExpectation(causes, "build_installs", installed)
     after = there._replace(causes=(*there.causes, f"{prefix}{name} node_runs"))
-    yield _complete_fact(launch, name, _launch_text(package, name))._replace(
+    yield _complete_expectation(launch, name, _launch_text(package, name))._replace(
         carried=(after._replace(causes=(*after.causes, "parameters names_agree")),)
     )
     connections = LaunchConnections(submission, package, path)
@@ -608,47 +634,51 @@ def _launch_facts(
         nodes = [node for node in nodes if node not in programs]
     if nodes:
         title = _title_of_nodes(_launch_text(package, name), nodes)
-        fact = _package_fact("node_runs", name, launch=name, nodes=nodes)
-        yield fact._replace(title=title, carried=(there,))
+        expectation = _package_expectation("node_runs", name, launch=name, nodes=nodes)
+        yield expectation._replace(title=title, carried=(there,))
     unrun = after._replace(causes=(*after.causes, *_OF_CODE))
     if active:
-        fact = _package_fact("node_runs", f"{name} active", launch=name, active=active)
+        expectation = _package_expectation(
+            "node_runs", f"{name} active", launch=name, active=active
+        )
         nodes_named = "the node" if len(active) == 1 else "each of the nodes"
         title = f"{nodes_named} {enumerated(active, _MAX_IN_TITLE)} becomes active"
-        yield fact._replace(title=title, carried=(unrun,))
-    for fact in _opened_facts(submission, launch, name):
-        [compared] = fact.carried  # the names that pay for a mistake in them
-        yield fact._replace(carried=(unrun._replace(causes=(*unrun.causes, *compared.causes)),))
+        yield expectation._replace(title=title, carried=(unrun,))
+    for expectation in _opened_expectations(submission, launch, name):
+        [compared] = expectation.carried  # the names that pay for a mistake in them
+        yield expectation._replace(
+            carried=(unrun._replace(causes=(*unrun.causes, *compared.causes)),)
+        )
     misnamed = unrun._replace(causes=(*unrun.causes, *_OF_CONNECTIONS))
-    for fact in connections.facts():
-        yield fact._replace(about=_THE_PACKAGE, carried=(misnamed,))
-    for fact in _turned_facts(package, path):
-        yield fact._replace(carried=(after,))
+    for expectation in connections.expectations():
+        yield expectation._replace(about=_THE_PACKAGE, carried=(misnamed,))
+    for expectation in _turned_expectations(package, path):
+        yield expectation._replace(carried=(after,))
 
 
 def _lifecycle_nodes(submission: Submission, launch: Launch) -> list[str]:
     """Return the names of the own nodes with a lifecycle that a launch file starts."""
     code, names = submission.workspace.code, []
     for node in launch.nodes:
-        facts = code.own_node(node) if node.when else None
-        data = content(submission, facts.location.path) if facts is not None else None
+        expectations = code.own_node(node) if node.when else None
+        data = content(submission, expectations.location.path) if expectations is not None else None
         name = code.find_name(node)
         if data is not None and name and b"LifecycleNode" in data:
             names.append(name)
     return names
 
 
-def _complete_fact(launch: Launch, name: str, shown: str) -> Fact:
+def _complete_expectation(launch: Launch, name: str, shown: str) -> Expectation:
     """Return that a launch file is there, installed, and finds the files that it names.
 
-    Of one of which not all files are known, that none is in a wrong place.
+    Of one of which not all files are known, return that none is in a wrong place.
     """
-    fact = _package_fact("launch_complete", name, name=name)
+    expectation = _package_expectation("launch_complete", name, name=name)
     title = f"a build installs {shown}"
     if launch.named("urdf", "rviz", "include", "read"):
         title += ", which finds the files that it names"
-    as_known = _package_fact("launch_complete", name, name=name, started=False)
-    return fact._replace(title=title, otherwise=(as_known._replace(title=title),))
+    as_known = _package_expectation("launch_complete", name, name=name, started=False)
+    return expectation._replace(title=title, otherwise=(as_known._replace(title=title),))
 
 
 def _title_of_nodes(shown: str, nodes: Sequence[str]) -> str:
@@ -669,7 +699,9 @@ def _launch_text(package: Package, name: str) -> str:
     return "the launch file" if len(launches) == 1 else f"the launch file {name}"
 
 
-def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator[Fact]:
+def _opened_expectations(
+    submission: Submission, launch: Launch, name: str
+) -> Iterator[Expectation]:
     """Yield what nodes and bridges publish, serve and call, and which controllers are spawned.
 
     What own nodes subscribe to is asked if none of them publishes it: then others do. Of a lab with
@@ -693,17 +725,25 @@ def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator
         asked["subscribes"].pop(topic, None)
     for verb, names in asked.items():
         if names:
-            fact = _package_fact("node_runs", f"{name} {verb}", launch=name, **{verb: names})
+            expectation = _package_expectation(
+                "node_runs", f"{name} {verb}", launch=name, **{verb: names}
+            )
             title = f"the nodes {_DONE[verb]} {enumerated([*names], _MAX_IN_TITLE)}"
-            yield fact._replace(title=title, carried=(CarriedFact(_COMPARED[verb], ""),))
+            yield expectation._replace(
+                title=title, carried=(CarriedExpectation(_COMPARED[verb], ""),)
+            )
     controllers = [*spawned_by(launch).names]
     if controllers:
-        fact = _package_fact("node_runs", f"{name} spawns", launch=name, spawns=controllers)
+        expectation = _package_expectation(
+            "node_runs", f"{name} spawns", launch=name, spawns=controllers
+        )
         title = f"spawners start {enumerated(controllers, _MAX_IN_TITLE)}"
-        yield fact._replace(title=title, carried=(CarriedFact(("controllers names_agree",), ""),))
+        yield expectation._replace(
+            title=title, carried=(CarriedExpectation(("controllers names_agree",), ""),)
+        )
 
 
-def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
+def _turned_expectations(package: Package, path: str) -> Iterator[Expectation]:
     """Yield what a launch file starts if one of its boolean arguments is turned round.
 
     This is what it starts in addition, and no more.
@@ -727,9 +767,11 @@ def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
             given = {"nodes": nodes, **given}
             starts = f"starts {enumerated(nodes, _MAX_IN_TITLE)}"
         if given:
-            fact = _package_fact("node_runs", f"{name} {argument}", launch=name, **given)
+            expectation = _package_expectation(
+                "node_runs", f"{name} {argument}", launch=name, **given
+            )
             title = f"with {argument}:={text}, {_launch_text(package, name)} {starts}"
-            yield fact._replace(args={argument: turned}, title=title)
+            yield expectation._replace(args={argument: turned}, title=title)
 
 
 def _started(launch: Launch) -> list[str]:
@@ -750,7 +792,7 @@ def _nodes_that_start(launch: Launch) -> list[str]:
     return names
 
 
-def _rviz_facts(package: Package) -> Iterator[Fact]:
+def _rviz_expectations(package: Package) -> Iterator[Expectation]:
     """Yield what may be true of each RViz file.
 
     It is also found by the first launch file that opens it.
@@ -763,29 +805,31 @@ def _rviz_facts(package: Package) -> Iterator[Fact]:
         of = {"name": name}
         if path in opened:
             of["launch"] = opened[path]
-        fact = _package_fact("rviz_found", name, **of)
+        expectation = _package_expectation("rviz_found", name, **of)
         is_opened = "launch" in of
         shown = (
             "the launch file opens an RViz file" if is_opened else f"there is an RViz file {name}"
         )
-        yield fact._replace(title=shown)
+        yield expectation._replace(title=shown)
         if rviz.fixed_frame:
-            fixed = _package_fact("rviz_fixed_frame", name, **of, frame=rviz.fixed_frame)
+            fixed = _package_expectation("rviz_fixed_frame", name, **of, frame=rviz.fixed_frame)
             yield fixed._replace(title=f"the Fixed Frame of RViz is {rviz.fixed_frame!r}")
         displays = dict.fromkeys(
             (display.package, display.kind) for display in rviz.displays if display.enabled
         )
-        yield from _display_facts(displays, of)
+        yield from _display_expectations(displays, of)
 
 
-def _display_facts(displays: Iterable[tuple[str, str]], of: Mapping[str, str]) -> Iterator[Fact]:
+def _display_expectations(
+    displays: Iterable[tuple[str, str]], of: Mapping[str, str]
+) -> Iterator[Expectation]:
     """Yield that displays, by package and kind, are on; `of` says in which RViz file."""
     for owner, kind in displays:
         if kind == "RobotModel":
-            robot_shown = _package_fact("rviz_shows_robot", of["name"], **of)
+            robot_shown = _package_expectation("rviz_shows_robot", of["name"], **of)
             yield robot_shown._replace(title="a RobotModel display shows the robot")
         else:
-            on = _package_fact(
+            on = _package_expectation(
                 "rviz_display_on", f"{of['name']} {kind}", **of, kind=f"{owner}/{kind}"
             )
             yield on._replace(title=f"RViz shows a {kind} display")

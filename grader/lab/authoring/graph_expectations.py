@@ -1,4 +1,4 @@
-"""The facts of what a reference connects after a launch: transforms, and ways of messages."""
+"""Expectations of what a reference connects after a launch: transforms, and ways of messages."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 from grader.base.errors import NotDecided
 from grader.base.quantities import point
 from grader.base.transforms import Vector
-from grader.lab.authoring.facts import Fact
+from grader.lab.authoring.expectations import Expectation
 from grader.lab.submission.submission import Submission
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
@@ -28,31 +28,37 @@ _DECIMALS = 6  # of metres and radians
 
 
 class LaunchConnections:
-    """What a launch file of a reference connects, for the facts of its package."""
+    """What a launch file of a reference connects, for the expectations of its package."""
 
     def __init__(self, submission: Submission, package: Package, path: str) -> None:
         self._workspace = submission.workspace
         self._graph = join_launches(self._workspace, [package.path(path)], ())
         self._own_packages = tuple(f"{each.name}/" for each in submission.packages)
 
-    def facts(self) -> Iterator[Fact]:
+    def expectations(self) -> Iterator[Expectation]:
         """Yield the transforms and the ways of messages that certainly are there."""
         for transform in list(self._published())[:_MAX_TRANSFORMS]:
             parent, child = transform.parent, transform.child
-            fact = self._fact("publishes_transform", child, parent=parent, child=child)
-            fact = fact._replace(title=f"{child!r} is published below {parent!r}")
+            expectation = self._expectation(
+                "publishes_transform", child, parent=parent, child=child
+            )
+            expectation = expectation._replace(title=f"{child!r} is published below {parent!r}")
             if transform.is_static and transform.pose is not None:
                 xyz = _rounded(transform.pose.translation)
-                placed = {**fact.arguments, "xyz": xyz, "rpy": _rounded(transform.pose.rpy)}
+                placed = {**expectation.arguments, "xyz": xyz, "rpy": _rounded(transform.pose.rpy)}
                 title = f"{child!r} is published at {point((*xyz,))} m in {parent!r}"
-                fact = fact._replace(arguments=placed, title=title, otherwise=(fact,))
-            yield fact
+                expectation = expectation._replace(
+                    arguments=placed, title=title, otherwise=(expectation,)
+                )
+            yield expectation
         for start, end in list(self._ways())[:_MAX_WAYS]:
-            fact = self._fact("connects", f"{start} {end}", **{"from": start, "to": end})
-            yield fact._replace(title=f"messages find a way from {start} to {end}")
+            expectation = self._expectation(
+                "connects", f"{start} {end}", **{"from": start, "to": end}
+            )
+            yield expectation._replace(title=f"messages find a way from {start} to {end}")
 
     def needed(self, launch: Launch, nodes: Sequence[str], *, are_ends_asked: bool) -> list[str]:
-        """Return the nodes that are needed for more than what other facts ask for.
+        """Return the nodes that are needed for more than what other expectations ask for.
 
         These are transforms, and what own nodes open, if that is asked: then a solution may divide
         its nodes over programs as it likes.
@@ -80,8 +86,8 @@ class LaunchConnections:
         seen = [end for each in own_nodes for end in each.ends if end.kind in _SEEN]
         return is_read and any(not end.doubt and end.type for end in seen)
 
-    def _fact(self, check: str, words: str, **arguments: Any) -> Fact:
-        return Fact("", check, arguments, f"{words} {check}", package="")
+    def _expectation(self, check: str, words: str, **arguments: Any) -> Expectation:
+        return Expectation("", check, arguments, f"{words} {check}", package="")
 
     def _transforms(self) -> list[GraphTransform]:
         """Return the transforms, without those of the robots; none if that is too much work."""
@@ -116,7 +122,7 @@ class LaunchConnections:
     def _outer_topics(self, nodes: Sequence[GraphNode]) -> tuple[list[str], list[str]]:
         """Return the topics that own nodes read from other nodes, and those that they send these.
 
-        Also those of sensors and commands, whose other nodes may be on the robot.
+        Those of sensors and commands, whose other nodes may be on the robot, are among them.
         """
         own_ends = [
             end for node in nodes if self._is_own(node) for end in node.ends if not end.doubt

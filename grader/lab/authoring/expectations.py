@@ -1,4 +1,4 @@
-"""The facts of a reference: what may be true of it.
+"""The expectations of a reference: what may be true of it.
 
 They are arguments of checks that are to be tried on it.
 
@@ -63,15 +63,15 @@ class Solution(NamedTuple):
         return self.reading.root
 
 
-class CarriedFact(NamedTuple):
-    """For mistakes of which other facts, by their words, a fact costs nothing if a check passes."""
+class CarriedExpectation(NamedTuple):
+    """What makes an expectation cost nothing: others that fail, by their words, and a check."""
 
     causes: tuple[str, ...]
     check: str
     arguments: Mapping[str, Any] = {}
 
 
-class Fact(NamedTuple):
+class Expectation(NamedTuple):
     """A check with arguments that the reference may pass."""
 
     about: str  # the heading
@@ -80,8 +80,8 @@ class Fact(NamedTuple):
     words: str  # of the id
     # what it is about: the name of a package, empty for the main one; None for the robot
     package: str | None = None
-    carried: "tuple[CarriedFact, ...]" = ()
-    otherwise: "Sequence[Fact]" = ()  # tried in its place if the reference does not pass it
+    carried: "tuple[CarriedExpectation, ...]" = ()
+    otherwise: "Sequence[Expectation]" = ()  # tried in its place if the reference does not pass it
     title: str = ""  # default: what the check says
     args: Mapping[str, str | bool] = {}  # launch arguments
     # of the look or the numbers of a robot, or of a launch file that another one includes, which a
@@ -95,27 +95,27 @@ class Omission(NamedTuple):
     what: str
     why: str
     # what would be a criterion of it, if the reference was corrected
-    fact: Fact | None = None
+    expectation: Expectation | None = None
 
 
-Facts = Iterator[Fact | Omission]
+Expectations = Iterator[Expectation | Omission]
 
 
-def robot_facts(solution: Solution) -> Facts:
+def robot_expectations(solution: Solution) -> Expectations:
     """Yield what may be true of the file, of each link with its parent joint, and of the robot."""
     robot = solution.robot
-    yield Fact(_THE_FILE, "urdf_loads", {}, "urdf_loads")
+    yield Expectation(_THE_FILE, "urdf_loads", {}, "urdf_loads")
     for link in robot.robot.links:
-        yield from _visual_facts(link)
+        yield from _visual_expectations(link)
         joint = robot.parent_joints.get(link.name)
         if joint is not None:
             try:
-                yield from _joint_facts(robot, joint)
+                yield from _joint_expectations(robot, joint)
             except (MissingElement, NotDecided) as error:  # an axis of length zero
                 yield Omission(f"{link.name} joint_axis", str(error))
-        yield from _body_facts(link)
+        yield from _body_expectations(link)
     if robot.parent_joints:
-        yield from _tree_facts(solution)
+        yield from _tree_expectations(solution)
 
 
 def are_joints_free(solution: Solution) -> bool:
@@ -127,12 +127,12 @@ def are_joints_free(solution: Solution) -> bool:
     return agreement.holds("frames") and agreement.holds("controllers")
 
 
-def _link_fact(link: str, check: str, **arguments: Any) -> Fact:
-    return Fact(link, check, {"link": link, **arguments}, f"{link} {check}")
+def _link_expectation(link: str, check: str, **arguments: Any) -> Expectation:
+    return Expectation(link, check, {"link": link, **arguments}, f"{link} {check}")
 
 
-def _robot_fact(check: str, **arguments: Any) -> Fact:
-    return Fact(_THE_ROBOT, check, arguments, check)
+def _robot_expectation(check: str, **arguments: Any) -> Expectation:
+    return Expectation(_THE_ROBOT, check, arguments, check)
 
 
 def _rounded(vector: Sequence[float], digits: int = 6) -> list[float]:
@@ -140,10 +140,10 @@ def _rounded(vector: Sequence[float], digits: int = 6) -> list[float]:
     return [round(value, digits) + 0.0 for value in vector]
 
 
-def _visual_facts(link: Link) -> Facts:
+def _visual_expectations(link: Link) -> Expectations:
     """Yield what a link shows.
 
-    The place and colour of a shape only if no other shape of the link is of its kind.
+    The place and colour of a shape are yielded only if no other shape of the link is of its kind.
     """
     if len(link.visuals) > MAX_SHAPES:
         yield Omission(f"{link.name} visuals", f"it has more than {MAX_SHAPES}")
@@ -160,11 +160,13 @@ def _visual_facts(link: Link) -> Facts:
                 selected = {"shape": type(visual.geometry).__name__.lower()}
             if visual.material is not None and not visual.material.texture:
                 colour = _rounded(visual.material.rgba, 4)
-                shown_colour = _link_fact(link.name, "shows_colour", **selected, colour=colour)
+                shown_colour = _link_expectation(
+                    link.name, "shows_colour", **selected, colour=colour
+                )
                 yield shown_colour._replace(is_detail=True)
             if not is_mesh:
                 xyz = _rounded(visual.origin.xyz)
-                centre = _link_fact(
+                centre = _link_expectation(
                     link.name,
                     "centre_at",
                     **selected,
@@ -178,7 +180,7 @@ def _visual_facts(link: Link) -> Facts:
         yield Omission(f"place and colour of each {kind.__name__.lower()} of {link.name}", reason)
 
 
-def _centre_title(link: str, visual: Visual, centre: Fact) -> str:
+def _centre_title(link: str, visual: Visual, centre: Expectation) -> str:
     """Return where the centre of a shape is, and along what its axis lies if it is a cylinder."""
     xyz, shape = centre.arguments["xyz"], type(visual.geometry).__name__.lower()
     where = f"at {point((*xyz,))} m in its frame" if any(xyz) else "in its frame"
@@ -188,25 +190,26 @@ def _centre_title(link: str, visual: Visual, centre: Fact) -> str:
     return f"the {shape} of {link!r} is centred {where}{along}"
 
 
-def _size(link: str, visual: Visual) -> Fact | Omission:
+def _size(link: str, visual: Visual) -> Expectation | Omission:
     match visual.geometry:
         case Box(size=size):  # along the axes of the link, whichever of its own they are
             first, *others = [
-                _link_fact(link, "shows_box", size=_rounded(edges)) for edges in permutations(size)
+                _link_expectation(link, "shows_box", size=_rounded(edges))
+                for edges in permutations(size)
             ]
             return first._replace(otherwise=others)
         case Cylinder(radius=radius, length=length):
-            return _link_fact(
+            return _link_expectation(
                 link, "shows_cylinder", radius=round(radius, 6), length=round(length, 6)
             )
         case Sphere(radius=radius):
-            return _link_fact(link, "shows_sphere", radius=round(radius, 6))
+            return _link_expectation(link, "shows_sphere", radius=round(radius, 6))
         case Capsule():
             return Omission(f"{link} size", "no check measures a capsule that a link shows")
         case mesh:
             file = "/".join(mesh_file(mesh.filename, is_expanded=True).steps)
             xyz, rpy = _rounded(visual.origin.xyz), _rounded(visual.origin.rpy)
-            return _link_fact(
+            return _link_expectation(
                 link, "shows_mesh", file=file, scale=_rounded(mesh.scale), xyz=xyz, rpy=rpy
             )
 
@@ -218,20 +221,22 @@ def _axis(visual: Visual) -> dict[str, Any]:
     return {"axis": _rounded(rotation_from_rpy(visual.origin.rpy)[2::3], 2), "angle": 1.0}
 
 
-def _body_facts(link: Link) -> Facts:
+def _body_expectations(link: Link) -> Expectations:
     """Yield the mass and inertia of a link, and its collision shapes.
 
-    Or that these are those that it shows.
+    If these are those that it shows, yield that.
     """
     if link.inertial is not None:
         least = abs(link.inertial.mass) * _MASS_SHARE
         tolerance = {"tolerance": least} if least < _MASS_TOLERANCE else {}
-        yield _link_fact(link.name, "mass_is", mass=link.inertial.mass, **tolerance)
+        yield _link_expectation(link.name, "mass_is", mass=link.inertial.mass, **tolerance)
         title = f"the inertia of {link.name!r} is that of a uniform solid of its shapes"
-        loose = _link_fact(link.name, "inertia_plausible", tolerance=_LOOSE_INERTIA)._replace(
-            title=title
+        loose = _link_expectation(
+            link.name, "inertia_plausible", tolerance=_LOOSE_INERTIA
+        )._replace(title=title)
+        yield _link_expectation(link.name, "inertia_plausible")._replace(
+            title=title, otherwise=[loose]
         )
-        yield _link_fact(link.name, "inertia_plausible")._replace(title=title, otherwise=[loose])
     if len(link.collisions) > MAX_SHAPES:
         yield Omission(f"{link.name} collisions", f"it has more than {MAX_SHAPES}")
         return
@@ -244,17 +249,17 @@ def _body_facts(link: Link) -> Facts:
         checks = ("shows_box", "shows_cylinder", "shows_sphere", "centre_at")
         what_is_shown = tuple(f"{link.name} {check}" for check in checks)
         known = [
-            CarriedFact(what_is_shown, shape.check, shape.arguments)
+            CarriedExpectation(what_is_shown, shape.check, shape.arguments)
             for shape in shapes
             if only and shape.check == "collides_as"
         ]
         shown = "shape" if len(shapes) == 1 else "shapes"
         title = f"{link.name!r} collides with the {shown} that it shows"
-        match = _link_fact(link.name, "collision_matches_visual")._replace(title=title)
+        match = _link_expectation(link.name, "collision_matches_visual")._replace(title=title)
         yield match._replace(otherwise=shapes if only else (), carried=tuple(known))
 
 
-def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fact:
+def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Expectation:
     match collision.geometry:
         case Box(size=size):
             shape: dict[str, Any] = {"box": _rounded(size)}
@@ -265,12 +270,12 @@ def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fac
         case Sphere(radius=radius):
             shape = {"sphere": round(radius, 6)}
         case _:
-            return _link_fact(link, "collision_matches_visual")
+            return _link_expectation(link, "collision_matches_visual")
     xyz, rpy = _rounded(collision.origin.xyz), _rounded(collision.origin.rpy, 4)
     rotated = ", rotated" if any(rpy) else ""
     title = f"{link!r} collides as {_shape_text(collision)} at {point((*xyz,))} m{rotated}"
-    fact = _link_fact(link, "collides_as", **shape, xyz=xyz, rpy=rpy, **only)
-    return fact._replace(title=title)
+    expectation = _link_expectation(link, "collides_as", **shape, xyz=xyz, rpy=rpy, **only)
+    return expectation._replace(title=title)
 
 
 def _shape_text(collision: Collision) -> str:
@@ -287,14 +292,16 @@ def _shape_text(collision: Collision) -> str:
     return "a mesh"
 
 
-def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
+def _joint_expectations(robot: Configuration, joint: Joint) -> Iterator[Expectation]:
     """Yield what may be true of the parent joint of a link.
 
     Raise MissingElement for an axis of length zero.
     """
     link, parent = joint.child, joint.parent
     title = f"a {joint.type} joint connects {link!r} to {parent!r}"  # its name is free
-    yield _link_fact(link, "held_by", parent=parent, joint_type=joint.type)._replace(title=title)
+    yield _link_expectation(link, "held_by", parent=parent, joint_type=joint.type)._replace(
+        title=title
+    )
     pose = robot.pose(link, relative_to=parent)
     xyz, rpy = _rounded(pose.translation), _rounded(pose.rpy, 4)
     if any(rpy):
@@ -302,39 +309,39 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
     else:
         turned = "not rotated"
     title = f"the frame {link!r} is at {point((*xyz,))} m in {parent!r}, {turned}"
-    frame = _link_fact(
+    frame = _link_expectation(
         link, "frame_at", relative_to=parent, xyz=xyz, **({"rpy": rpy} if any(rpy) else {})
     )
     yield frame._replace(title=title)
-    of_type = CarriedFact(
+    of_type = CarriedExpectation(
         (f"{link} held_by",), "frame_at", frame.arguments
     )  # a joint of another type has no such range
     if joint.limit is not None and joint.type in ("revolute", "prismatic"):
-        limits = _range_fact(joint)
+        limits = _range_expectation(joint)
         if joint.mimic is not None:
             opposite = _rounded(pose.rotate(robot.axis(joint)), 2)
             directed = {**limits.arguments, "relative_to": parent, "direction": opposite}
             limits = limits._replace(arguments=directed)
         yield limits._replace(carried=(of_type,))
-        for effort in _effort_facts(joint):
+        for effort in _effort_expectations(joint):
             yield effort._replace(carried=(of_type,))
     if joint.dynamics is not None and joint.type != "fixed":
         friction, damping = joint.dynamics.friction, joint.dynamics.damping
         title = f"the joint that moves {link!r} has friction {friction:g} and damping {damping:g}"
-        yield _link_fact(link, "joint_dynamics", friction=friction, damping=damping)._replace(
-            title=title, is_detail=True
-        )
+        yield _link_expectation(
+            link, "joint_dynamics", friction=friction, damping=damping
+        )._replace(title=title, is_detail=True)
     if joint.type not in _WITH_AXIS:
         return
     own_axis = robot.axis(joint)
     direction = _rounded(pose.rotate(own_axis), 2)
     follows = joint.mimic is not None and robot.robot.has_joint(joint.mimic.joint)
     if follows:
-        yield _mimic_fact(robot, joint, direction)
+        yield _mimic_expectation(robot, joint, direction)
     lies = "is parallel to" if follows else "points along"
     title = f"the axis of the joint that moves {link!r} {lies} {point((*direction,))} in {parent!r}"
     either_way = {"either_way": True} if follows else {}
-    axis = _link_fact(
+    axis = _link_expectation(
         link, "joint_axis", relative_to=parent, direction=direction, **either_way
     )._replace(title=title)
     in_own_frame = {
@@ -343,10 +350,14 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         "direction": _rounded(own_axis, 2),
         **either_way,
     }
-    yield axis._replace(carried=(CarriedFact((f"{link} frame_at",), "joint_axis", in_own_frame),))
+    yield axis._replace(
+        carried=(CarriedExpectation((f"{link} frame_at",), "joint_axis", in_own_frame),)
+    )
 
 
-def _mimic_fact(robot: Configuration, joint: Joint, direction: Sequence[float]) -> Fact:
+def _mimic_expectation(
+    robot: Configuration, joint: Joint, direction: Sequence[float]
+) -> Expectation:
     """Return how a joint follows another one, by its motion.
 
     The opposite axis with the opposite multiplier is the same.
@@ -357,7 +368,7 @@ def _mimic_fact(robot: Configuration, joint: Joint, direction: Sequence[float]) 
     moves = f"the joint that moves {link!r} follows the one that moves {leader!r}"
     times = "" if mimic.multiplier == 1 else f", {mimic.multiplier:g} times"
     plus = "" if mimic.offset == 0 else f", plus {mimic.offset:g}"
-    fact = _link_fact(
+    expectation = _link_expectation(
         link,
         "mimics",
         leader=leader,
@@ -366,10 +377,10 @@ def _mimic_fact(robot: Configuration, joint: Joint, direction: Sequence[float]) 
         relative_to=joint.parent,
         direction=[*direction],
     )
-    return fact._replace(title=f"{moves}{times}{plus}")
+    return expectation._replace(title=f"{moves}{times}{plus}")
 
 
-def _range_fact(joint: Joint) -> Fact:
+def _range_expectation(joint: Joint) -> Expectation:
     """Return the range of a joint that turns or slides and has limits, in degrees or metres."""
     limit = joint.limit
     assert limit is not None
@@ -378,12 +389,12 @@ def _range_fact(joint: Joint) -> Fact:
     others = {} if turns else {"tolerance": _SLIDING_TOLERANCE}
     unit = "degrees" if turns else "m"
     title = f"the range of the joint that moves {joint.child!r} is {lower:g} to {upper:g} {unit}"
-    return _link_fact(joint.child, "joint_limits", lower=lower, upper=upper, **others)._replace(
-        title=title
-    )
+    return _link_expectation(
+        joint.child, "joint_limits", lower=lower, upper=upper, **others
+    )._replace(title=title)
 
 
-def _effort_facts(joint: Joint) -> Iterator[Fact]:
+def _effort_expectations(joint: Joint) -> Iterator[Expectation]:
     """Yield the maximum effort and velocity of a joint with limits."""
     assert joint.limit is not None
     given = {"effort": joint.limit.effort, "velocity": joint.limit.velocity}
@@ -392,12 +403,14 @@ def _effort_facts(joint: Joint) -> Iterator[Fact]:
         numbers = enumerated([f"{name} {value:g}" for name, value in known.items()])
         title = f"the joint that moves {joint.child!r} has {numbers}"
         words = f"{joint.child} effort joint_limits"
-        fact = Fact(joint.child, "joint_limits", {"link": joint.child, **known}, words)
-        yield fact._replace(title=title, is_detail=True)
+        expectation = Expectation(
+            joint.child, "joint_limits", {"link": joint.child, **known}, words
+        )
+        yield expectation._replace(title=title, is_detail=True)
 
 
-def _tree_facts(solution: Solution) -> Iterator[Fact]:
-    """Yield the facts of the whole tree of links.
+def _tree_expectations(solution: Solution) -> Iterator[Expectation]:
+    """Yield the expectations of the whole tree of links.
 
     These are the names of joints that other elements use, the root, the numbers of joints, and
     how the tips move.
@@ -407,18 +420,18 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     words = words_of_foreign(solution.root)
     used = {joint.name: joint.child for joint in joints if joint.name in words}
     if used and not are_joints_free(solution):
-        yield _robot_fact("joints_named", parent=root, joints=used)
+        yield _robot_expectation("joints_named", parent=root, joints=used)
     fixed = (joint.child for joint in joints if joint.parent == root and joint.type == "fixed")
-    rooted = _robot_fact("root_of_tree", link=root, holds=next(fixed, root))
+    rooted = _robot_expectation("root_of_tree", link=root, holds=next(fixed, root))
     yield rooted
     about_types = _words_of_joints(joints, "held_by", "mimics")
-    if_types_differ = CarriedFact(about_types, rooted.check, rooted.arguments)
+    if_types_differ = CarriedExpectation(about_types, rooted.check, rooted.arguments)
     moving = [joint for joint in joints if joint.type != "fixed"]
     types = Counter(joint.type for joint in moving)
     numbers = {"moving": sum(joint.mimic is None for joint in moving)}
     for joint_type in _COUNTED:
         numbers[joint_type] = types[joint_type]
-    counts = _robot_fact("counts", **numbers)
+    counts = _robot_expectation("counts", **numbers)
     yield counts._replace(title=_joints_in_words(moving), carried=(if_types_differ,))
     tips = _moving_tips(robot)[:_MAX_TIPS]
     if tips:
@@ -426,8 +439,8 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
         names = enumerated([repr(tip) for tip in tips], _MAX_TIPS_IN_TITLE)
         title = f"{names} {verb} as in the reference solution"
         about_poses = _words_of_joints(joints, "frame_at", "joint_axis", "mimics")
-        if_poses_differ = CarriedFact(about_poses, "counts", numbers)
-        motion = _robot_fact("kinematics_match_reference", links=tips, match="order")
+        if_poses_differ = CarriedExpectation(about_poses, "counts", numbers)
+        motion = _robot_expectation("kinematics_match_reference", links=tips, match="order")
         yield motion._replace(title=title, carried=(if_poses_differ, if_types_differ))
 
 
@@ -455,7 +468,7 @@ def _kinds_in_words(leaders: Counter[str], followers: Counter[str]) -> Iterator[
 
 
 def _words_of_joints(joints: Iterable[Joint], *checks: str) -> tuple[str, ...]:
-    """Return the words of the facts that checks find about joints, each about its child."""
+    """Return the words of the expectations that checks find about joints, each about its child."""
     return tuple(f"{joint.child} {check}" for joint in joints for check in checks)
 
 
