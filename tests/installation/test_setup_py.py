@@ -30,7 +30,6 @@ UNKNOWN: dict[str, str] = {
     "hidden_file_named": "line 12: urdf/.hidden.urdf is an ignored file",
     "packages_in_setup_cfg": "line 3: the section [options] of setup.cfg is not evaluated; line 3: the section [options.packages.find] of setup.cfg is not evaluated",
     "same_target_twice": "line 13: several files are installed as share/my_robot/box.urdf: other/box.urdf and urdf/box.urdf",
-    "try_around_imports": "line 5: a try with finally is not evaluated",
     "two_sources_for_one_target": "line 15: several files are installed as share/my_robot/meshes/two.stl: meshes/a/two.stl and meshes/two.stl",
     "version_executed": "line 3: exec is not evaluated",
 }

@@ -157,8 +157,8 @@ class ActionVisitor:
         """Visit an action, or each of those of which it is one."""
         if isinstance(value, Unknown) and value.candidates:
             for candidate in value.candidates:
-                if candidate is not None:
-                    self.visit(candidate, context, when and None, at)
+                for action in listed(candidate) if candidate is not None else ():
+                    self.visit(action, context, when and None, at)
             return
         self.steps += 1
         is_left = context.budget.take_of_whole(_OF_ACTION)

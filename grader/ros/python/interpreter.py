@@ -633,14 +633,18 @@ class Interpreter(Evaluation):
     def _raise(self, node: ast.Raise, _: py.Scope) -> None:
         raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
         kind = _BUILT_IN.get(raised.id) if isinstance(raised, ast.Name) else None
-        if self.goes_on and not self.attempts and (self.possible or self.chosen):
+        is_ended = self.goes_on and not self.attempts
+        if is_ended and (self.possible or self.chosen):
             # What a launch file refuses on purpose is no mistake in it.
             reason = f"whether the file raises an error here {NOT_EVALUATED}"
             self.doubted(py.Unknown(reason, self.at))
             raise _RaiseFlow(reason, self.at)
         if isinstance(kind, type) and issubclass(kind, Exception):
             self.error(f"the file raises {kind.__name__} here", self.at, kind)
-        raise py.Undetermined("which error is raised here is not evaluated", self.at, is_final=True)
+        reason = f"which error is raised here {NOT_EVALUATED}"
+        if is_ended:
+            raise _RaiseFlow(reason, self.at)
+        raise py.Undetermined(reason, self.at, is_final=True)
 
     def _attribute(self, node: ast.Attribute, scope: py.Scope) -> py.Value:
         owner, name = self.evaluate(node.value, scope), node.attr
