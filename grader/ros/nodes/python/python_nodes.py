@@ -61,6 +61,7 @@ from grader.ros.package.entry_points import (
     unreadable_module,
 )
 from grader.ros.package.package import Package
+from grader.ros.python.bindings import names_bound
 from grader.ros.python.budget import Budget
 from grader.ros.python.constants import Constants, constant_in, dotted, make_order
 from grader.ros.python.evaluation import record
@@ -867,12 +868,39 @@ class _Module:
         base = self._constants.evaluate_node(owner, part.scope)
         is_base = isinstance(base, QualifiedName) and base.name in NODE_CLASSES
         if (is_super or is_base) and NODE_CLASSES.intersection(self.bases[self._classes[part.of]]):
-            name = self._argument(part, call, 0 if is_super else 1, "node_name")
-            yield _Name(_text(name), self._at(call))
+            position = 0 if is_super else 1
+            name = _text(self._argument(part, call, position, "node_name"))
+            written = given_argument(call, position, "node_name")
+            if name is None and isinstance(written, ast.Name):
+                name = self._constructor_text(part, written.id)
+            yield _Name(name, self._at(call))
             for keyword in call.keywords:
                 if keyword.arg in _OPTIONS:
                     reason = f"{keyword.arg or 'more arguments'} of its Node"
                     yield Doubt(reason, self._at(call), "" if keyword.arg else "more arguments")
+
+    def _constructor_text(self, part: CodePart, name: str) -> str | None:
+        """Return the text that a parameter of a constructor has in each call of the module.
+
+        It is None where calls give several, or where the constructor binds the name again.
+        """
+        assert isinstance(part.node, AnyFunction)
+        assert part.of is not None
+        parameters = [*part.node.args.posonlyargs, *part.node.args.args]
+        names, defaults = [each.arg for each in parameters], part.node.args.defaults
+        if name not in names or name in names_bound(walk(ast.Module(part.node.body, []))):
+            return None
+        position = names.index(name)
+        default = ([None] * (len(names) - len(defaults)) + [*defaults])[position]
+        texts = set[str | None]()
+        for caller in self._parts:
+            for call in caller.calls:
+                if self._called(caller, call) == self._classes[part.of]:
+                    given = self._argument(caller, call, position - 1, name)
+                    if given is None:
+                        given = self._constants.evaluate_node(default, part.scope)
+                    texts.add(_text(given))
+        return texts.pop() if len(texts) == 1 else None
 
     def _read_method(self, part: CodePart, call: ast.Call, method: str) -> "Iterator[_Fact]":
         """Yield what a method of a node declares, opens or reads."""
