@@ -484,6 +484,12 @@ def _shut_down(visitor: ActionVisitor, call: Call, context: Context, when: bool 
 def _visit_group(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     """Visit a group: what it sets ends with it, unless scoped is False."""
     inner = context.copy() if call.kwargs.get("scoped", True) else context
+    given = call.kwargs.get("launch_configurations") or {}
+    if not isinstance(given, dict):
+        raise Undetermined("what this group sets is not evaluated", call.at)
+    if inner is not context:
+        before = inner.arguments if call.kwargs.get("forwarding", True) else {}
+        inner.arguments = {**before, **_launch_arguments([*given.items()], context, call.at)}
     visitor.visit_all(call.kwargs["actions"], call, inner, when)
 
 

@@ -592,9 +592,16 @@ def _wrong_timer(call: Call) -> str:
 
 
 def _wrong_group(call: Call) -> str:
-    if call.kwargs.keys() - {"actions", "scoped", "condition"} or not isinstance(
-        call.kwargs.get("scoped", True), bool
-    ):
+    given = call.kwargs
+    others = given.keys() - {
+        "actions",
+        "scoped",
+        "forwarding",
+        "launch_configurations",
+        "condition",
+    }
+    flags = [given.get(name, True) for name in ("scoped", "forwarding")]
+    if others or not all(isinstance(flag, bool) for flag in flags):
         raise Undetermined("what this group keeps")
     return ""
 

@@ -117,7 +117,7 @@ _PROCESS: _Parts = {
     "respawn_delay": _NOT_EVALUATED,
     "sigkill_timeout": _NOT_EVALUATED,
     "sigterm_timeout": _NOT_EVALUATED,
-    "env": _NOT_EVALUATED,
+    "env": _ELEMENTS,
 }
 _NODE: _Parts = {
     "exec": _REQUIRED,
@@ -144,7 +144,7 @@ _ACTIONS: Mapping[str, _Parts] = {
     "executable": {"cmd": _REQUIRED, **_PROCESS},
     "group": {
         "scoped": _BOOL,
-        "forwarding": _NOT_EVALUATED,
+        "forwarding": _BOOL,
         "keep": _NOT_EVALUATED,
         "children": _CHILDREN,
     },
@@ -182,6 +182,7 @@ _NESTED: Mapping[str, _Parts] = {
     "arg": {"name": _REQUIRED, "value": _REQUIRED},
     "let": {"name": _REQUIRED, "value": _REQUIRED},
     "choice": {"value": _REQUIRED},
+    "env": {"name": _REQUIRED, "value": _REQUIRED},
     "composable_node": _COMPOSABLE_NODE,
     "composable_lifecycle_node": {**_COMPOSABLE_NODE, "autostart": _BOOL},
     "remap": {"from": _REQUIRED, "to": _REQUIRED},
@@ -228,7 +229,7 @@ _ROS1 = (
 )
 _SUBSTITUTIONS_OF_ROS1 = {"arg": "var", "find": "find-pkg-share", "optenv": "env"}
 _RENAMED = {"node-name": ": write name"}
-_RAW = ("shell", "emulate_tty", "scoped", "autostart")
+_RAW = ("shell", "emulate_tty", "scoped", "forwarding", "autostart")
 _NAMED = ("name", "namespace")  # attributes that the class LifecycleNode needs
 
 
@@ -498,7 +499,7 @@ def _typed_attribute(entity: _Entity, name: str, value: Any, wanted: type | None
         if wanted is str:
             return value
         return _typed_text(value, wanted, entity.place(name))
-    if not _is_typed(value, wanted, entity.place(name)):
+    if not _is_typed(value, wanted):
         what = f"{name} of {entity.kind} is {value!r}, which YAML reads as {type(value).__name__}"
         if wanted is str:
             hint = "put quotes around it"
@@ -560,6 +561,9 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
                 kwargs["parameters"] = [_read_parameter(child) for child in inner]
             case "remap":
                 kwargs["remappings"] = _read_pairs(inner, "from", "to")
+            case "env":
+                pairs = _read_pairs(inner, "name", "value")
+                kwargs["additional_env"] = {tuple(given): value for given, value in pairs}
             case "arg" | "let":
                 arguments = _read_pairs(inner, "name", "value")
                 kwargs["launch_arguments"] = [*kwargs.get("launch_arguments", ()), *arguments]
@@ -700,7 +704,11 @@ def _parse_value(text: str, at: Position) -> list[Value]:
 
 
 def _parse_if_text(value: Any, at: Position) -> Any:
-    """Return a value; a text is parsed. Raises EvaluationFails."""
+    """Return a value; a text is parsed, as each in a list is. Raises EvaluationSignal."""
+    if isinstance(value, list):
+        if "$(" in str(value):
+            raise Undetermined("a list with substitutions is not evaluated", at)
+        return [_parse_if_text(item, at) for item in value]
     parts = _parse_value(value, at) if isinstance(value, str) else [value]
     if len(parts) == 1 and not isinstance(parts[0], Call):
         return parts[0]
@@ -747,20 +755,21 @@ def _typed_text(text: str, kind: type | None, at: Position) -> Any:
         typed = yaml_value(text) if text else text
     except ValueError:
         return text
-    if not _is_typed(typed, kind, at):
+    if not _is_typed(typed, kind):
         raise EvaluationFails(
             f"{text[:40]!r} is of no type that is accepted here: put quotes in it", at
         )
     return typed
 
 
-def _is_typed(value: Any, kind: type | None, at: Position) -> bool:
-    """Return whether a value is a text or of a type; with None, whether it is a scalar.
+def _is_typed(value: Any, kind: type | None) -> bool:
+    """Return whether a value is a text or of a type; with None, a scalar or a list of them.
 
-    Raises Undetermined.
+    The scalars of a list are texts, and of one type besides: is_instance_of_valid_type() of launch.
     """
     if isinstance(value, list) and kind is None:
-        raise Undetermined("a list in this place is not evaluated", at)
+        types = {type(item) for item in value} - {str}
+        return len(types) < 2 and types <= {bool, int, float}
     return isinstance(value, str | (kind or float) | (kind or int))
 
 
