@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Protocol
 
 from grader.ros.installation.places import PREFIX, SHARE
-from grader.ros.launch.call_arguments import describe_kind, items_in
+from grader.ros.launch.call_arguments import PARTIAL, describe_kind, items_in
 from grader.ros.launch.components import load_by_command, load_components, start_container
 from grader.ros.launch.launch_classes import CONDITION, ENTITY, SOURCE, class_named, is_a
 from grader.ros.launch.launch_model import (
@@ -540,7 +540,7 @@ def _call_opaque_function(
 ) -> None:
     function, args = call.kwargs["function"], call.kwargs.get("args") or []
     named, first = call.kwargs.get("kwargs") or {}, list[Value]()
-    if isinstance(function, Call) and function.name == "functools.partial":
+    if isinstance(function, Call) and function.name == PARTIAL:
         named, [function, *first] = {**function.kwargs, **named}, function.args
     is_known = isinstance(args, list | tuple) and isinstance(named, dict)
     if not isinstance(function, Function) or not is_known:

@@ -119,6 +119,9 @@ _EVALUATED = frozenset(
 _KEPT_AS_IT_IS = {"GroupAction": "actions", "TimerAction": "actions", "OpaqueFunction": "args"}
 
 
+PARTIAL = "functools.partial"
+
+
 class LaunchFunctions(dict[str, Any]):
     """The functions by full name, with every class of launch and its methods."""
 
@@ -543,8 +546,10 @@ def _wrong_include(call: Call) -> str:
 
 
 def _wrong_opaque_function(call: Call) -> str:
-    if not isinstance(call.kwargs["function"], Function) or not isinstance(
-        call.kwargs.get("args"), list | tuple | None
+    function, args = call.kwargs["function"], call.kwargs.get("args")
+    is_partial = isinstance(function, Call) and function.name == PARTIAL
+    if not (isinstance(function, Function) or is_partial) or not isinstance(
+        args, list | tuple | None
     ):
         raise Undetermined("this OpaqueFunction")
     return ""

@@ -21,7 +21,7 @@ from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.installation.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.ros.known.releases import Release
 from grader.ros.launch.actions import ActionVisitor, Include, NotIncluded
-from grader.ros.launch.call_arguments import LaunchFunctions, describe_kind, join_path
+from grader.ros.launch.call_arguments import PARTIAL, LaunchFunctions, describe_kind, join_path
 from grader.ros.launch.launch_classes import (
     DESCRIPTION,
     JOINED_PATH,
@@ -76,7 +76,7 @@ from grader.ros.python.values import (
 
 _MODULE_NAME = "python_launch_file"  # the __name__ of a launch file
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
-_RECORDED = ("builtins.open.close", "builtins.open.__enter__", "functools.partial")
+_RECORDED = ("builtins.open.close", "builtins.open.__enter__", PARTIAL)
 _TEXTS = [
     f"{name}.{method}"
     for name in ("xacro.process_file", "xacro.parse")
