@@ -128,13 +128,15 @@ class Constants(Interpreter):
                 last_star = max(last_star, node.lineno)
             if isinstance(node, ast.Import | ast.ImportFrom):
                 imported = self._imported_names(node)
-                self.imported.update(value.name for value in imported.values())
+                self.imported.update(
+                    value.name for value in imported.values() if isinstance(value, QualifiedName)
+                )
                 for name, value in imported.items():
                     if counts[name] == 1:
                         scope.names[name] = value
         return last_star
 
-    def _imported_names(self, node: ast.Import | ast.ImportFrom) -> dict[str, QualifiedName]:
+    def _imported_names(self, node: ast.Import | ast.ImportFrom) -> dict[str, Value]:
         """Return what an import binds."""
         module = ""
         if isinstance(node, ast.ImportFrom):
@@ -146,7 +148,7 @@ class Constants(Interpreter):
                 if count:
                     above = above[:-count]
                 module = ".".join(filter(None, (*above, module)))
-        names: dict[str, QualifiedName] = {}
+        names: dict[str, Value] = {}
         for alias in node.names:
             names |= imported_names(module, alias, {})
         return names

@@ -1,6 +1,7 @@
-"""The calls of a module that a condition decides, or whose errors it may catch."""
+"""The calls of a module that a condition or loop decides, or whose errors it may catch."""
 
 import ast
+from collections.abc import Iterator
 
 from grader.ros.nodes.message_uses import suppresses
 from grader.ros.python.constants import last_name
@@ -23,6 +24,21 @@ def calls_in_branches(tree: ast.Module) -> frozenset[ast.Call]:
             is_inside = True
         pending += [(child, is_inside) for child in children(node)]
     return frozenset(calls)
+
+
+def loops_over_tuples(
+    tree: ast.AST,
+) -> Iterator[tuple[ast.Tuple, ast.expr, list[ast.AST]]]:
+    """Yield the loops that bind several names: these, what is iterated, and what runs each time."""
+    for node in walk(tree):
+        match node:
+            case ast.For(target=ast.Tuple() as target, iter=items, body=body):
+                yield target, items, [part for statement in body for part in walk(statement)]
+            case ast.ListComp(
+                elt=element,
+                generators=[ast.comprehension(target=ast.Tuple() as target, iter=items, ifs=[])],
+            ):
+                yield target, items, walk(element)
 
 
 def program_name(test: ast.expr | None) -> str:

@@ -39,7 +39,11 @@ from grader.ros.nodes.node_facts import (
     Timer,
     TypeImport,
 )
-from grader.ros.nodes.python.branches import calls_caught, calls_in_branches
+from grader.ros.nodes.python.branches import (
+    calls_caught,
+    calls_in_branches,
+    loops_over_tuples,
+)
 from grader.ros.nodes.python.broadcast_transforms import SENDS, SendingMethod, sent_transforms
 from grader.ros.nodes.python.code_faults import (
     ModuleText,
@@ -82,6 +86,7 @@ _MAX_SEARCHED = 32 * 1024  # bytes of a program in which slips are searched
 _MAX_MODULES = 100
 _MAX_CODE = 512 * 1024  # characters of the modules of a package in which faults are searched
 _OF_CALL = 4  # parts of a call that leads to a node
+_MAX_ROUNDS = 50  # of a loop
 _MAX_GUESSED = 20  # entry points of a package, of which each that names nothing may be misspelt
 _BYTES_A_PART = 2  # of a program in which slips are searched, charged as one part
 _MAX_FIRST_LINE = 100  # bytes
@@ -548,7 +553,8 @@ class _Module:
                 self._facts[self._at(call)] = [_Name(name, self._at(call))]
         self._read_parameters_that_are_nodes(calls)
         for part, call in calls:
-            self._read_call(part, call)
+            for round_part in self._rounds.get(call, [part]):
+                self._read_call(round_part, call)
             self._read_transforms(part, call)
             if self._called(part, call) in _MAKES_A_NODE:
                 for facts in self._facts.values():
@@ -668,11 +674,38 @@ class _Module:
     @cached_property
     def _calls_by_function(self) -> Mapping[str, Sequence[tuple[str, Location]]]:
         calls: dict[str, list[tuple[str, Location]]] = {}
+        functions = {part.name: part for part in self._parts if part.of is None and part.name}
         for part in self._parts:
-            if part.of is None:
-                of_part = [(self._called(part, call), self._at(call)) for call in part.calls]
-                calls.setdefault(part.name, []).extend(of_part)
+            if part.of is not None:
+                continue
+            of_part = calls.setdefault(part.name, [])
+            for call in part.calls:
+                called = self._called(part, call)
+                helper = functions.get(called.removeprefix(f"{self._name}."))
+                made = self._made_by(helper, part, call) if helper is not None else ()
+                of_part += [(name, self._at(call)) for name in (called, *made)]
         return calls
+
+    def _made_by(self, helper: CodePart, part: CodePart, call: ast.Call) -> Iterator[str]:
+        """Yield the full names of the classes that a function is given by a call, and calls."""
+        called = {dotted(inner.func) for inner in helper.calls}
+        for name, argument in _parameters_given(helper.node, call):
+            given = constant_in(part.scope, dotted(argument))
+            if isinstance(given, QualifiedName) and name in called:
+                yield given.name
+
+    @cached_property
+    def _rounds(self) -> Mapping[ast.Call, list[CodePart]]:
+        """The calls in loops over tuples that the file lists, each with a part for each tuple."""
+        rounds: dict[ast.Call, list[CodePart]] = {}
+        for part in self._parts:
+            for target, items, body in loops_over_tuples(part.node):
+                bound = self._bindings_around(part).values.get(dotted(items), items)
+                values = self._constants.evaluate_node(bound, part.scope)
+                parts = [*_bind_rounds(part, target, values)][:_MAX_ROUNDS]
+                if parts:
+                    rounds |= dict.fromkeys(_find_calls(body), parts)
+        return rounds
 
     def _called(self, part: CodePart, call: ast.Call) -> str:
         first, dot, rest = dotted(call.func).partition(".")
@@ -961,6 +994,16 @@ def _parameters_given(function: ast.AST, call: ast.Call) -> Iterator[tuple[str, 
         given = given_argument(call, behind, parameter.arg)
         if given is not None and bound[parameter.arg] == 1:
             yield parameter.arg, given
+
+
+def _bind_rounds(part: CodePart, target: ast.Tuple, values: Value) -> Iterator[CodePart]:
+    """Yield a part of code with the names of a loop for each tuple; none where one is not known."""
+    items = values if isinstance(values, list | tuple) else ()
+    if all(isinstance(item, tuple) and len(item) == len(target.elts) for item in items):
+        names = [dotted(name) for name in target.elts]
+        for item in items:
+            bound = dict(zip(names, item, strict=True))
+            yield part._replace(scope=Scope(bound, part.scope))
 
 
 def _has_alias(tree: ast.Module) -> bool:
