@@ -459,3 +459,57 @@ def test_attributes_that_only_increase(body: str, messages: list[str]) -> None:
     statements = "".join(f"        {line}\n" for line in body.splitlines())
     text = f"from rclpy.node import Node\nclass Look(Node):\n    def __init__(self):\n        super().__init__('look')\n{statements}"
     assert [fault.message for fault in nodes_of(text).faults] == messages
+
+
+@pytest.mark.parametrize(
+    ("loop", "opened"),
+    [
+        ("[self.create_publisher(k, t, 1) for k, t in [(Float32, 'a'), (Float32, 'b')]]", "a b"),
+        ("for t, d in (('a', 1), ('b', 2)): self.create_publisher(Float32, t, d)", "a b"),
+        ("pairs = [(Float32, 'a')]; [self.create_publisher(k, t, 1) for k, t in pairs]", "a"),
+        ("[self.create_publisher(k, t, 1) for k, t in [(Float32, 'a'), (Float32, x)]]", "a ?"),
+        ("[self.create_publisher(k, t, 1) for k, t in found()]", "?"),
+        ("[self.create_publisher(k, t, 1) for k, t in [(Float32, 'a'), (Float32,)]]", "?"),
+    ],
+)
+def test_calls_in_a_loop_over_tuples_are_one_for_each(loop: str, opened: str) -> None:
+    """What each gives is known as far as the list is written in the file."""
+    node = node_of(loop)
+    assert " ".join(end.name or "?" for end in node.endpoints) == opened
+
+
+@pytest.mark.parametrize(
+    ("signature", "call", "name"),
+    [
+        ("self, name='talker'", "Talker()", "talker"),
+        ("self, name='talker'", "Talker('other')", "other"),
+        ("self, name", "Talker(name='other')", "other"),
+        ("self, name='talker'", "Talker(), Talker('other')", None),
+        ("self, name='talker'", "Talker(*given)", None),
+        ("self, name='talker'", "print()", None),
+    ],
+)
+def test_a_name_may_be_a_parameter_of_the_constructor(
+    signature: str, call: str, name: str | None
+) -> None:
+    """It is known where all calls of the module give the same text, or leave the default."""
+    head = f"class Talker(Node):\n    def __init__({signature}):\n        super().__init__(name)\n"
+    [node] = nodes_of(f"{_HEAD}\n{head}\ndef main():\n    {call}\n").nodes
+    assert node.name == name
+
+
+@pytest.mark.parametrize(
+    ("helper", "created"),
+    [
+        ("def run(kind):\n    rclpy.spin(kind())", ["talker"]),
+        ("def run(kind):\n    print(kind)", []),
+    ],
+)
+def test_a_helper_may_make_the_node_whose_class_it_is_given(
+    helper: str, created: list[str]
+) -> None:
+    """A program has the node if the function calls that parameter."""
+    [program, *_] = nodes_of(
+        f"{_HEAD}{_CLASS}\n{helper}\n\ndef main():\n    rclpy.init()\n    run(Talker)\n"
+    ).programs
+    assert [node.name for node in program.nodes] == created
