@@ -11,6 +11,7 @@ from jsonschema import Draft202012Validator
 from tests.command_line import ROOT, run
 from tests.workspace.launch_graphs import FILES, TALKER, launch_file
 
+_NODE = "Node(package='demo', executable='talker')"
 _DIFFDRIVE = ROOT / "rubrics" / "diffdrive"
 _STRANGE = '<b>"x"&|]\\#`\u202e'  # in a parameter, a topic and the name of a launch file
 _STRANGE_FILE = "a<b>&'\"#;].launch.py"
@@ -360,3 +361,26 @@ def test_a_large_graph_fits_a_page(workspace: Path) -> None:
     page = shown(workspace, "--format", "html")
     assert page.count('class="item ') == 130
     assert len(page.encode()) < 150_000
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        ((), "0 transforms; "),
+        (("import logging", "logging.info(1)"), "0 transforms; "),
+        (("while share: pass",), "read in part (line 15 was not evaluated); "),
+        (("from other_tools import find", "find()"), "read in part (line 15 was not evaluated); "),
+        (("while share: pass",) * 2, "read in part (2 lines were not evaluated); "),
+    ],
+)
+def test_the_head_says_which_lines_are_not_evaluated(
+    workspace: Path, lines: tuple[str, ...], words: str
+) -> None:
+    """The other lines are read, whatever these do."""
+    text = launch_file(_NODE).replace(
+        "    return", "".join(f"    {line}\n" for line in lines) + "    return"
+    )
+    (workspace / "demo/launch/demo.launch.py").write_text(text, encoding="utf-8")
+    [first, *_] = shown(workspace).splitlines()
+    assert first.startswith("demo/launch/demo.launch.py: 1 node, ")
+    assert words in first

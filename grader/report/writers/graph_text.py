@@ -57,11 +57,23 @@ def _head(shown: ShownGraph) -> Text:
         counted(len(graph.transforms), "transform"),
     ]
     style = "green" if shown.inspection.is_passed else "bold red"
+    if graph.unread:
+        counts.append(f"read in part ({_unread_lines(shown)} not evaluated)")
     return Text.assemble(
         (printable(graph.path), "bold"),
         f": {', '.join(counts)}; ",
         (problem_counts(shown.inspection), style),
     )
+
+
+def _unread_lines(shown: ShownGraph) -> str:
+    """Return which lines were not evaluated, or how many, with the verb."""
+    places = {each.location[:2]: each.location for each in shown.graph.unread}
+    if len(places) > 1:
+        return f"{len(places)} lines were"
+    [place] = places.values()
+    is_here = place.path == shown.graph.path
+    return f"line {place.line} was" if is_here else f"{printable(place.file_and_line)} was"
 
 
 def _repeated_doubts(nodes: Sequence[GraphNode]) -> dict[str, str]:

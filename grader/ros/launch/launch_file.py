@@ -299,6 +299,8 @@ def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
         doubt = interpreter.doubt
         findings.add_unknown(doubt.reason, doubt.at, follows_error=doubt.follows_error)
         findings.add_doubt(doubt.reason, doubt.at)
+    for unread in interpreter.unread:
+        findings.add_unknown(unread.reason, unread.at, follows_error=unread.follows_error)
     if (
         interpreter.errors
     ):  # the description is not loaded, so what is wrong with the rest of it does not count

@@ -215,6 +215,7 @@ class Interpreter(Evaluation):
         self.exports = exports or {}
         self.local_modules = local_modules
         self.goes_on = goes_on
+        self.unread: list[py.Unknown] = []  # the statements that are not evaluated
         self.chosen = 0  # how many conditions are around the statement, which hold
 
     def run(self, code: Code) -> py.Scope:
@@ -241,7 +242,7 @@ class Interpreter(Evaluation):
         given = function.parameters
         count = len([*given.posonlyargs, *given.args]) - len(given.defaults)
         event: list[py.Value] = [py.Unknown("an event is known only at run time", at)] * count
-        recorded, doubt = list(self.errors), self.doubt
+        recorded, doubt, unread = list(self.errors), self.doubt, list(self.unread)
         try:
             return self.call_function(
                 function, py.Call("", event if args is None else list(args), dict(named), at)
@@ -250,7 +251,7 @@ class Interpreter(Evaluation):
             return self._stop(error, at)
         finally:
             if args is None:
-                self.errors, self.doubt = recorded, doubt
+                self.errors, self.doubt, self.unread = recorded, doubt, unread
 
     def _stop(
         self, error: py.EvaluationSignal | RecursionError, at: Position | None = None
@@ -292,7 +293,7 @@ class Interpreter(Evaluation):
         for part in parts:
             if isinstance(part, ast.Name) and part.id not in names:
                 self._make_reached_open(part.id, scope, unknown)
-        self.doubted(unknown)
+        self.unread.append(self.doubted(unknown))
         scope.names.update(dict.fromkeys(names, unknown))
 
     def _make_reached_open(self, name: str, scope: py.Scope, unknown: py.Unknown) -> None:
@@ -488,7 +489,9 @@ class Interpreter(Evaluation):
     def _while(self, node: ast.While, scope: py.Scope) -> None:
         """Run the body once, as what may run or not, with what it binds as open values."""
         reason = py.Undetermined(f"how often this loop runs {NOT_EVALUATED}", self.at)
-        scope.names.update(dict.fromkeys(names_bound(own_nodes(node)), reason.as_unknown(self.at)))
+        unknown = self.doubted(reason.as_unknown(self.at))
+        self.unread.append(unknown)
+        scope.names.update(dict.fromkeys(names_bound(own_nodes(node)), unknown))
         self._perhaps([partial(self._block, node.body, scope), lambda: None], reason, scope)
         self._block(node.orelse, scope)
 
