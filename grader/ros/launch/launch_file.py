@@ -723,11 +723,10 @@ def _read_variable(evaluation: Evaluation, call: Call) -> Value:
     name, default = known(call.argument(0, "key")), known(call.argument(1, "default"))
     if name == "HOME":
         return HOME
-    reason = "the environment is not evaluated"
+    unknown: Unknown = UnknownText("the environment is not evaluated", call.at)
     if call.name.endswith("__getitem__"):  # a KeyError, if it is not set
-        evaluation.doubted(Unknown(reason, call.at))
-        return UnknownText(reason, call.at)
-    return (UnknownText if isinstance(default, str) else Unknown)(reason, call.at)
+        return unknown if evaluation.guarded else evaluation.doubted(unknown)
+    return unknown if isinstance(default, str) else Unknown(unknown.reason, call.at)
 
 
 def _set_variable(_: Evaluation, call: Call) -> Value:

@@ -99,6 +99,7 @@ class Evaluation(Expressions):
         # whether what follows a statement that is not evaluated is evaluated
         self.goes_on = False
         self.possible = 0  # how many branches around the statement may not run
+        self.guarded = 0  # how many conditions are around it that ask for the environment
         self._depth = 0  # of calls of the file's functions
 
     def doubted(self, unknown: py.Unknown) -> py.Unknown:
@@ -461,6 +462,10 @@ class Evaluation(Expressions):
             match left, right:
                 case (list(), py.Unknown()) | (py.Unknown(), list()):
                     return [*spread(left), *spread(right)]
+        for value, other in ((left, right), (right, left)):
+            is_text = isinstance(value, py.Unknown) and value.is_text
+            if is_text and isinstance(node.op, ast.Add) and _is_textual(other):
+                return value  # a longer text that is not known
         return operate(node.op, left, right, self.budget)
 
     def _ifexp(self, node: ast.IfExp, scope: py.Scope) -> py.Value:
@@ -492,6 +497,10 @@ def spread(value: py.Value) -> list[py.Value]:
         if isinstance(candidate, list | tuple):
             items += [py.one_of([item], value.reason, value.at) for item in candidate]
     return items if value.candidates else [value]
+
+
+def _is_textual(value: py.Value) -> bool:
+    return isinstance(value, str) or (isinstance(value, py.Unknown) and value.is_text)
 
 
 def _cannot_fail(node: ast.expr) -> bool:

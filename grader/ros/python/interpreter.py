@@ -78,12 +78,6 @@ _OF_BRANCHES = "which of these branches runs is not evaluated"
 _ENVIRONMENTS = ("os.environ", "environ")
 # By which packages, programs and files are found.
 SEARCHED_VARIABLES = ("AMENT_PREFIX_PATH", "PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "HOME")
-_WITHOUT_EFFECT = frozenset(
-    {
-        *("os.path.join", "os.pathsep.join", "os.getenv", "str"),
-        *(f"{name}.get" for name in _ENVIRONMENTS),
-    }
-)
 
 
 class _ClassScope(py.Scope):
@@ -123,34 +117,6 @@ def _full_name(node: ast.expr) -> str:
 def _reads_environment(node: ast.AST) -> bool:
     nodes = [each for each in walk(node) if isinstance(each, ast.Name | ast.Attribute)]
     return any(_full_name(each) in _ENVIRONMENTS for each in nodes)
-
-
-def _names_bound(body: Sequence[ast.stmt]) -> set[str] | None:
-    """Return the names that branches bind; None if they do more than set the environment, too."""
-    names = set[str]()
-    for statement in body:
-        match statement:
-            case (
-                ast.Assign(targets=[target], value=value)
-                | ast.AugAssign(target=target, value=value)
-            ):
-                pass
-            case ast.Pass():
-                continue
-            case _:
-                return None
-        calls = [_full_name(each.func) for each in walk(value) if isinstance(each, ast.Call)]
-        if not _WITHOUT_EFFECT.issuperset(calls):
-            return None
-        match target:
-            case ast.Name(id=name):
-                names.add(name)
-            case ast.Subscript(value=owner, slice=ast.Constant(value=key)):
-                if _full_name(owner) not in _ENVIRONMENTS or key in SEARCHED_VARIABLES:
-                    return None
-            case _:
-                return None
-    return names
 
 
 def _without_end(node: ast.Try) -> ast.Try:
@@ -423,50 +389,27 @@ class Interpreter(Evaluation):
                 raise py.Undetermined("this annotation is not evaluated", self.at, is_final=True)
 
     def _if(self, node: ast.If, scope: py.Scope) -> None:
-        branches = [*node.body, *node.orelse]
-        if _reads_environment(node.test) and self._skip_branches(branches, scope):
-            return
+        doubt, is_guard = self.doubt, _reads_environment(node.test)
         value = self.evaluate(node.test, scope)
+        if is_guard:
+            self.doubt = doubt  # whether a variable is set raises nothing
         try:
             holds = truth(value)
         except py.Undetermined as error:
             if error.follows_error:
                 raise
             bodies = (node.body, node.orelse)
-            self._perhaps([partial(self._block, body, scope) for body in bodies], error, scope)
+            self.guarded += is_guard
+            try:
+                self._perhaps([partial(self._block, body, scope) for body in bodies], error, scope)
+            finally:
+                self.guarded -= is_guard
         else:
             self.chosen += 1
             try:
                 self._block(node.body if holds else node.orelse, scope)
             finally:
                 self.chosen -= 1
-
-    def _skip_branches(self, branches: Sequence[ast.stmt], scope: py.Scope) -> bool:
-        """Make unknown what branches bind of which one runs; return False if they do more.
-
-        It also returns False if they read a name that is not bound: one of them may fail.
-        """
-        names = _names_bound(branches)
-        if names is None or not self._has_names(branches, scope):
-            return False
-        for name in names:
-            reason = f"which branch binds {name} {NOT_EVALUATED}"
-            scope.names[name] = py.Unknown(reason, self.at)
-        return True
-
-    def _has_names(self, statements: Sequence[ast.stmt], scope: py.Scope) -> bool:
-        """Return whether each name that statements read is bound before."""
-        bound = set[str]()
-        for statement in statements:
-            names = [part for part in walk(statement) if isinstance(part, ast.Name)]
-            try:
-                for name in names:
-                    if isinstance(name.ctx, ast.Load) and name.id not in bound:
-                        self._name(name, scope)
-            except py.EvaluationFails:
-                return False
-            bound.update(name.id for name in names if isinstance(name.ctx, ast.Store))
-        return True
 
     def _for(self, node: ast.For, scope: py.Scope) -> None:
         items = self.evaluate(node.iter, scope)
@@ -583,11 +526,6 @@ class Interpreter(Evaluation):
                 self._try(_without_end(node), scope)
             finally:
                 self._block(node.finalbody, scope)
-            return
-        branches = [*node.body, *node.orelse]
-        for handler in node.handlers:
-            branches += handler.body
-        if any(map(_reads_environment, node.body)) and self._skip_branches(branches, scope):
             return
         doubt, self.doubt, raised = self.doubt, None, None
         self.attempts += 1
