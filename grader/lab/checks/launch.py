@@ -197,6 +197,9 @@ def _with_components_of(
     """Return names of nodes with those of the components that are the nodes of these programs."""
     code = submission.workspace.code
     all_names = [*names]
+    for node in launch.nodes:
+        if node.program_name in names:
+            all_names.append(node.name)
     for name in names:
         package, _, executable = name.rpartition("/")
         own_code = code.by_package.get(package)

@@ -22,7 +22,13 @@ from grader.ros.launch.node_parameters import (
     parameters_in_words,
     remap_rules,
 )
-from grader.ros.launch.started_nodes import REMAPS, evaluate_remaps, namespace_below
+from grader.ros.launch.started_nodes import (
+    REMAPS,
+    evaluate_remaps,
+    find_description,
+    namespace_below,
+    read_frame_prefix,
+)
 from grader.ros.launch.substitutions import (
     CONDITIONS,
     PART_UNKNOWN,
@@ -148,6 +154,11 @@ def _add_components(
         package = _text_if_known(item.kwargs["package"], context, item)
         plugin = _text_if_known(item.kwargs["plugin"], context, item)
         at = findings.locate(item.at)
+        node = _as_node(item, package, plugin, is_loaded, context, at)
+        if node is not None and node.is_state_publisher:
+            node = node._replace(frame_prefix=read_frame_prefix(item, context))
+            if is_loaded is not False:
+                find_description(findings, _with_container_parameters(item, call), context)
         findings.components.append(
             LoadedComponent(
                 package,
@@ -157,9 +168,21 @@ def _add_components(
                 loaded_at,
                 container,
                 has_parameters=bool(item.kwargs.get("parameters")),
-                node=_as_node(item, package, plugin, is_loaded, context, at),
+                node=node,
             )
         )
+
+
+def _with_container_parameters(component: Call, action: Call) -> Call:
+    """Return a component with what its container may give it besides, whose values are not known.
+
+    A component reads the parameter files of the process of its container.
+    """
+    given = ("parameters", "arguments", "ros_arguments")
+    if action.short == "ComposableNodeContainer" and not any(map(action.kwargs.get, given)):
+        return component
+    kwargs = {**component.kwargs, "ros_arguments": ()}
+    return Call(component.name, component.args, kwargs, component.at)
 
 
 def _as_node(

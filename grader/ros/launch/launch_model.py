@@ -262,6 +262,21 @@ class StartedNode(NamedTuple):
             return self.executable
         return f"{self.package}/{self.executable}"
 
+    @property
+    def program_name(self) -> str:
+        """The name of the program that is this node, also if its class is loaded as a component."""
+        from grader.ros.known.end_rows import program_of_component  # late: few files need its rows
+
+        if "::" not in self.executable:
+            return self.name
+        program = program_of_component(self.package, self.executable)
+        return self._replace(executable=program).name
+
+    @property
+    def is_state_publisher(self) -> bool:
+        """Whether it is robot_state_publisher, as a program or as a component."""
+        return STATE_PUBLISHER in (self.executable, self.program_name)
+
 
 class LoadedComponent(NamedTuple):
     """A class that a launch file loads into a container of rclcpp_components.
@@ -400,9 +415,7 @@ class Launch(NamedTuple):
         tf2 ignores a slash at the start.
         """
         publishers = [
-            node
-            for node in self.nodes
-            if node.executable == STATE_PUBLISHER and node.when is not False
+            node for node in self.nodes if node.is_state_publisher and node.when is not False
         ]
         prefixes = dict.fromkeys(node.frame_prefix for node in publishers) or [""]
         return tuple(

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping
 
 from grader.base.source import Location, Source
 from grader.ros.known.package_rows import package_row
-from grader.ros.launch.launch_model import STATE_PUBLISHER
 from grader.workspace.graph.code_ends import End
 from grader.workspace.graph.graph import Graph, graph_of
 from grader.workspace.model.code_text import code_alone
@@ -101,7 +100,7 @@ def _of_messages(graph: Graph, sources: "_CodeSources") -> Iterator[Mismatch]:
 
 def _compares_times(end: End) -> bool:
     """Return whether a program certainly compares the times of messages."""
-    if end.node.executable != STATE_PUBLISHER:
+    if not end.node.is_state_publisher:
         return package_row(end.node.package).compares_time
     for given in end.node.parameters or ():
         if given.path or given.unknown or _IGNORES in given.values:

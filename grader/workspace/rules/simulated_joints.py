@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from grader.base.text import quoted
-from grader.ros.launch.launch_model import STATE_PUBLISHER, Launch, StartedNode
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.urdf.model import Joint
 from grader.workspace.graph.bridge_rows import BRIDGE, are_rows_known
 from grader.workspace.graph.graph import graph_of
@@ -84,7 +84,7 @@ def simulated_joint_facts(workspace: Workspace) -> Iterator[Fact]:
     if workspace.robots.may_be_others or is_said:
         return
     for number, (_, launch) in enumerate(workspace.launches.roots if moving else ()):
-        publishers = [node for node in launch.nodes if node.executable == STATE_PUBLISHER]
+        publishers = [node for node in launch.nodes if node.is_state_publisher]
         if not _creates_robot(launch) or not publishers or launch.unknown or launch.commands:
             continue
         yield Compared("wiring")
@@ -125,6 +125,6 @@ def _may_publish(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether it is not known that a node publishes no positions of joints."""
     if node.package == BRIDGE:
         return not are_rows_known(workspace, node)
-    if node.package == _SIMULATION or node.executable == STATE_PUBLISHER:
+    if node.package == _SIMULATION or node.is_state_publisher:
         return False
     return may_publish_type(workspace, node, _STATES)
