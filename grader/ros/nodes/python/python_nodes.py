@@ -616,7 +616,8 @@ class _Module:
     @cached_property
     def field_uses(self) -> Sequence[FieldUse]:
         """The fields that the module uses of messages, services and actions."""
-        return [*field_uses(self._code, self._parts, self._constants.value_of)]
+        nodes = self.text().nodes
+        return [*field_uses(self._code, self._parts, self._constants.value_of, nodes)]
 
     def _node(
         self,

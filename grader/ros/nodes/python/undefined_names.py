@@ -11,7 +11,7 @@ from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.package_tables import INTERFACE_KINDS, interface_table
 from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import Release
-from grader.ros.nodes.node_facts import CodeFault, FieldUse
+from grader.ros.nodes.node_facts import CodeFault, FieldUse, RclpyObject
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.used_fields import resolve_field
 from grader.ros.python.bindings import names_bound
@@ -141,16 +141,25 @@ def _why_wrong(module: str, names: list[str]) -> str:
 def wrong_fields(
     source: Source, uses: Iterable[FieldUse], releases: Collection[Release]
 ) -> Iterator[CodeFault]:
-    """Yield the fields that well-known types do not have, where it is sure what is meant."""
+    """Yield the fields that well-known types do not have, or that get an object of rclpy.
+
+    Only where it is sure what is meant.
+    """
 
     def find(package: str, name: str) -> Interface | None:
         return (known_interfaces(package, tuple(releases)) or {}).get(name)
 
     for use in uses:
         used = resolve_field(use, find)
-        if used is None or not used.is_absent:
+        if used is None:
             continue
-        meant = used.find_meant(find, is_sure=True)
+        for value in use.literal if used.name in used.section.fields else ():
+            if isinstance(value, RclpyObject):
+                end, words = source.start_offset(value.end), f"`{value.lacks}` is added"
+                fixes = CodeEdits(source).insert(end, value.lacks, words)
+                message = f"the {used.noun} {used.name} is set to {value.words}"
+                yield CodeFault("field-value", message, use.location, fixes=fixes)
+        meant = used.find_meant(find, is_sure=True) if used.is_absent else None
         if meant is not None:
             start = source.offset(use.location.line, use.location.column)
             fixes = CodeEdits(source).rewrite(start, start + len(used.name), meant)
