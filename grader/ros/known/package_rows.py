@@ -71,6 +71,19 @@ class GainsRow(NamedTuple):
     without: Mapping[str, str] = {}  # the parameter that switches this off for an interface
 
 
+class _FeedbackRow(NamedTuple):
+    """The state interface of each joint that a controller reads, as one of two that a switch names.
+
+    It reads none where another switch is on.
+    """
+
+    joints: tuple[str, ...]  # parameters
+    switch: str  # a parameter, which is on by default
+    on: str  # the interface
+    off: str
+    unless: str  # the other switch, which is off by default
+
+
 class CommandRow(NamedTuple):
     """A topic to which a program publishes commands.
 
@@ -118,6 +131,7 @@ class _ControllerRow(NamedTuple):
     action: str = ""  # below its name
     publishes_joint_states: bool = False  # of all joints
     gains: GainsRow | None = None
+    feedback: _FeedbackRow | None = None
     transforms: tuple[_TransformRow, ...] = ()
     wheels: Mapping[str, WheelRow] = {}  # by its parameters with numbers
 

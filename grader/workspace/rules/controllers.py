@@ -12,7 +12,7 @@ from grader.ros.known.package_rows import (
     controller_types,
     is_known_controller,
 )
-from grader.ros.known.releases import releases_with
+from grader.ros.known.releases import other_name, releases_with
 from grader.workspace.graph.compared_robots import robots_for_file
 from grader.workspace.graph.started_controllers import (
     Controller,
@@ -146,6 +146,13 @@ def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismat
     is_known = any(kind.startswith(f"{package}/") for kind in types)
     if _may_have_type(workspace, written, is_known=is_known):
         return
+    at = controller.type.location
+    other = other_name("controller", written, workspace.releases)
+    if other is not None:
+        either = corrections(written, at, other.name or None)
+        text = f"{controller.name}.type: {other.message}"
+        yield Mismatch(_CONTROLLER_TYPE, text, at, corrections=either)
+        return
     same_class = [kind for kind in types if kind.partition("/")[2] == class_name]
     meant = _meant_type(written, same_class, is_known=is_known)
     if meant is None and not is_known:
@@ -153,7 +160,6 @@ def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismat
     guess = f"; did you mean {meant!r}?" if meant is not None else ""
     message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
     is_certain = is_known or near(written, same_class) is not None
-    at = controller.type.location
     either = corrections(written, at, meant)
     yield Mismatch(_CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
 
@@ -175,12 +181,12 @@ def _may_have_type(workspace: Workspace, written: str, *, is_known: bool) -> boo
 
     `is_known` says whether all types of its package are known.
     """
-    if is_known_controller(written) or releases_with("controller", written):
-        return True
     package = written.partition("/")[0]
     is_of_workspace = any(each.name == package for each in workspace.packages)
     if is_of_workspace or workspace.texts.has_plugin(written):
         return True
+    if is_known_controller(written) or releases_with("controller", written):
+        return other_name("controller", written, workspace.releases) is None
     if is_known or not any(each.depends_on(package) for each in workspace.packages):
         return False
     return near(package, [kind.partition("/")[0] for kind in controller_types()]) is None
@@ -376,7 +382,7 @@ _CONTROLLER_INTERFACE = Rule(
     "controllers",
     NO_CONTROLLER,
     SIMILAR,
-    "<ros2_control> has the command interfaces that a controller needs.",
+    "<ros2_control> has the interfaces of joints that a controller needs.",
     why=(
         "The controller manager does not activate a controller whose interfaces are missing. "
         "Its spawner ends with an error, and the joints do not move."
@@ -431,26 +437,43 @@ def _beside(workspace: Workspace, controller: Controller, section: YamlNode) -> 
 def _no_state(
     workspace: Workspace, controller: Controller, section: YamlNode
 ) -> Iterator[Mismatch]:
-    """Yield the state interfaces of a list that <ros2_control> does not have of a joint.
+    """Yield the state interfaces that a controller reads and <ros2_control> does not have.
 
     Own hardware may have others than those that are listed there.
     """
     if not is_known_controller(controller.type.text):
         return
-    robots = robots_for_file(workspace, section.source.path).robots
-    offered = state_interfaces(robots)
+    offered = state_interfaces(robots_for_file(workspace, section.source.path).robots)
+    said = set[str]()
+    for kind, joint, at in _needed_states(controller, section):
+        interfaces = offered.get(joint, (kind,))
+        if kind in said or kind in interfaces or may_be_offered(workspace, kind, "state_interface"):
+            continue
+        said.add(kind)
+        text = (
+            f"{controller.name} needs the state interface {joint}/{kind}, which <ros2_control> "
+            "does not have"
+        )
+        yield Mismatch(_CONTROLLER_INTERFACE, text, at)
+
+
+def _needed_states(
+    controller: Controller, section: YamlNode
+) -> Iterator[tuple[str, str, Location]]:
+    """Yield the state interfaces that a controller reads: kind, joint and where it is named."""
     for kind in _entries(section, "state_interfaces"):
-        lacking = []
         for joint in _entries(section, "joints"):
-            name = joint.text or ""
-            if name in offered and kind.text not in offered[name]:
-                lacking.append(name)
-        if lacking and not may_be_offered(workspace, kind.text or "", "state_interface"):
-            text = (
-                f"{controller.name} needs the state interface {lacking[0]}/{kind.text}, which "
-                "<ros2_control> does not have"
-            )
-            yield Mismatch(_CONTROLLER_INTERFACE, text, kind.location)
+            yield kind.text or "", joint.text or "", kind.location
+    feedback = controller_row(controller.type.text).feedback
+    if feedback is None:
+        return
+    switch, other = section.get(feedback.switch), section.get(feedback.unless)
+    kinds = {"true": feedback.on, "false": feedback.off}
+    kind_read = kinds.get((switch.text or "").lower(), "") if switch is not None else feedback.on
+    is_off = other is None or (other.text or "").lower() == "false"
+    for key in feedback.joints if kind_read and is_off else ():
+        for joint in _entries(section, key):
+            yield kind_read, joint.text or "", joint.location
 
 
 def _are_all_joints(

@@ -137,7 +137,7 @@ def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
     for controller in defined_controllers(workspace):
         types[controller.name] = controller.type.text or ""
         if not workspace.texts.has_plugin(types[controller.name]):
-            yield "controller", types[controller.name], controller.location, ""
+            yield "controller", types[controller.name], controller.type.location, ""
     for _, tree in workspace.installed.trees:
         for value in values_in(tree):
             if value.keys and value.keys[-1] in _PLUGIN_KEYS:
