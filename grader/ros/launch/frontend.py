@@ -896,7 +896,7 @@ def find_later_words(root: _Entity, findings: Findings) -> None:
         for kind, name, at in words:
             since = first_release(kind, name)
             if since:
-                findings.add_later(_describe_word(kind, name), since, at)
+                findings.add_later(f"there is no {_describe_word(kind, name)}", since, at)
 
 
 def _describe_word(kind: str, name: str) -> str:
