@@ -7,13 +7,14 @@ None of the functions reads a file.
 
 import ast
 import posixpath
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from enum import Enum
 from functools import cache, lru_cache
 from itertools import chain
 from pathlib import PurePosixPath
 
-from grader.base.names import closest, did_you_mean
+from grader.base.names import closest, did_you_mean, near
+from grader.ros.known.package_tables import python_table
 from grader.ros.known.python_names import MODULES, python_names, python_version
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.python import values as py
@@ -136,10 +137,43 @@ def import_error(
         if name in exports[module] or name == "*":
             return None
         homes = [home for home, names in exports.items() if name in names]
+        # The package whose users import it, not a module that happens to import it as well.
+        home = max(homes, key=lambda home: _count_modules(home, exports), default="")
         return f"{module} has no {name!r}" + (
-            f": import it from {homes[-1]}" if homes else did_you_mean(name, exports[module])
+            f": import it from {home}" if home else did_you_mean(name, exports[module])
         )
+    full = module or name
+    meant = find_meant_module(full, {*exports, *python_table().modules})
+    if meant is not None:
+        return f"there is no module {full!r}" + (f"; did you mean {meant!r}?" if meant else "")
     return _import_error(module, name, releases)
+
+
+def _count_modules(package: str, modules: Iterable[str]) -> int:
+    return sum(module.startswith(f"{package}.") for module in modules)
+
+
+def find_meant_module(module: str, known: Collection[str]) -> str | None:
+    """Return the module that one stands for that a package of ROS 2 certainly does not have.
+
+    It is empty if any may be meant. The result is None for a module that may be there: all that
+    launch and launch_ros have is known, of other packages only what is like one that is there.
+    """
+    if module.partition(".")[0] in python_table().of_ros1:
+        return ""
+    parts = module.split(".")
+    for end in range(2, len(parts) + 1):
+        above, name = ".".join(parts[: end - 1]), parts[end - 1]
+        inside = [other for other in known if other.startswith(f"{above}.")]
+        beside = [other.removeprefix(f"{above}.") for other in inside]
+        if name in beside or f"{above}.{name}" in known:
+            continue
+        meant = near(name, [other for other in beside if "." not in other])
+        if meant is not None:
+            return ".".join([above, meant, *parts[end:]])
+        is_whole = above in ("launch", "launch_ros") and above in known
+        return "" if is_whole and not name.startswith("_") else None
+    return None
 
 
 @lru_cache(maxsize=256)

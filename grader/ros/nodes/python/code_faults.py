@@ -166,7 +166,8 @@ def code_faults(
     """
     search = _Search(module, others, attributes)
     yield from undefined_names(module.code)
-    yield from wrong_imports(module.code)
+    names = {re.split("[./]", name.removesuffix(".py"))[-1] for name in others}
+    yield from wrong_imports(module.code, names)
     yield from search.uncalled_main()
     yield from search.undefined_attributes()
     yield from search.called_callbacks()
