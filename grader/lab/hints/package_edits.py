@@ -62,6 +62,9 @@ _SHARE_FUNCTION = "get_package_share_directory"
 _MAX_PATHS = 8  # that are wrong in one file
 _MAX_EDITS = 3  # of one path
 _MAX_FILES = 200
+_ADDRESS = re.compile(
+    r"\bemail\s*=\s*[\"'](?P<all>(?P<name>[\w.+-]+)(?:\s+at\s+|\s*[(\[]at[)\]]\s*)(?P<host>[\w.-]+))[\"']"
+)
 _LAUNCH = "the launch file"
 _DESCRIPTION = "LaunchDescription"
 _MAX_AROUND = 30  # lines that are indented together
@@ -118,8 +121,15 @@ def _proposals_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     source = task.source(path)
     if source is not None and path is not None:
         for proposal in _proposals_of_file(task, kind, source, path, like):
-            if proposal.edits:
+            if proposal.edits and not any(map(_writes_address, proposal.edits)):
                 yield proposal
+
+
+def _writes_address(edit: Edit) -> bool:
+    """Return whether an edit writes an e-mail address of others: those of the reference's file."""
+    if "@" not in edit.new or edit.new in edit.old:
+        return False
+    return not {*_WORD.findall(edit.old)}.issuperset(_WORD.findall(edit.new))
 
 
 def _proposals_of_file(
@@ -146,6 +156,9 @@ def _proposals_of_file(
         yield from _undefined_names(file, what)
     elif ending == ending_of_like:
         yield from _other_values(source, wanted, what)
+    for address in _ADDRESS.finditer(source.text):
+        edit = source.edit(*address.span("all"), f"{address['name']}@{address['host']}")
+        yield change([edit], "an e-mail address without @", what)
     if kind == "launch":
         launch = task.launch(path, source)
         yield from _launch_paths(task, launch, source)

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from grader.base.element_edits import escaped
-from grader.base.names import near
+from grader.base.names import closest, near
 from grader.base.source import Edits
 from grader.base.text import enumerated, quoted
 from grader.lab.hints.edits import MAX_IN_HINT
@@ -17,7 +17,7 @@ from grader.lab.hints.robot_draft import Draft, Set, child_of, end_of
 from grader.lab.hints.robot_numbers import mistake_in, values_of
 from grader.lab.hints.tree_difference import Node, Step, paired, steps
 from grader.ros.xml.parsing import Element
-from grader.ros.xml.urdf_format import CHILDREN, TAGS
+from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN, TAGS
 
 _ENDS = ("parent", "child")
 _MOVING = ("revolute", "continuous", "prismatic", "planar")  # the types of joints whose axis counts
@@ -83,7 +83,8 @@ class RobotDifference:
     @cached_property
     def pieces(self) -> list[Piece]:
         """The pieces, each once: values first, then what moves, is added and is removed."""
-        return _unique([*self._pieces(self._steps), *self._materials(), *self._joint_names()])
+        pieces = [*self._misspelt_attributes(), *self._pieces(self._steps)]
+        return _unique([*pieces, *self._materials(), *self._joint_names()])
 
     @cached_property
     def missing(self) -> list[MissingPart]:
@@ -143,6 +144,19 @@ class RobotDifference:
         )
         edits = (*self.draft.remove(element), *self.draft.insert(parent, text))
         return self.piece(element, cause, edits)._replace(around=parent)
+
+    def _misspelt_attributes(self) -> Iterator[Piece]:
+        """Give attributes that ROS 2 ignores the missing names that they are like."""
+        for element in self.draft.root.iter(*ATTRIBUTES):
+            known = ATTRIBUTES[str(element.tag)]
+            given = list(map(str, element.keys()))
+            for name in given:
+                meant = closest(name, known.difference(given)) if name not in known else None
+                if meant is not None:
+                    edits = self.draft.rename_attribute(element, name, meant)
+                    yield self.piece(
+                        element, f"the name of the attribute {meant} of {{}}", edits, rank=SIBLING
+                    )
 
     def _materials(self) -> Iterator[Piece]:
         """Name a material as links use it, or give a link the reference's colour.
