@@ -194,12 +194,13 @@ def _has_new_build_errors(before: Submission, after: Submission) -> bool:
     return any((stop.path, stop.reason) not in known for stop in now.stops)
 
 
-def _count_connections(submission: Submission) -> Counter[tuple[str, str]]:
+def _count_connections(submission: Submission | None) -> Counter[tuple[str, str]]:
     """Return how many connections of each kind each launch file makes."""
     from grader.workspace.api import connections_in, launch_graph  # late: few edits need them
 
     counts: Counter[tuple[str, str]] = Counter()
     with suppress(NotDecided):
+        assert submission is not None
         for _, launch in submission.workspace.launches.roots:
             path = launch.source.path
             graph = launch_graph(submission.workspace, path)
@@ -564,12 +565,11 @@ class HintSearch:
 
         A controller that hears nothing compares with nothing.
         """
+        edits = proof.proposal.edits
+        if all(edit.path.endswith(ROBOT_ENDINGS) for edit in edits):
+            return False
         before = self.trials.edited(self.edits) if self.edits else self.trials.submission
-        after = self.trials.edited((*self.edits, *proof.proposal.edits))
-        if before is None or after is None or before.package is None:
-            return False
-        if all(edit.path.endswith(ROBOT_ENDINGS) for edit in proof.proposal.edits):
-            return False
+        after = self.trials.edited((*self.edits, *edits))
         return bool(_count_connections(before) - _count_connections(after))
 
     def _weight(self, name: str) -> tuple[bool, bool, Decimal]:

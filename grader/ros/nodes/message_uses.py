@@ -38,12 +38,15 @@ _MAX_PATH = 12
 _MAX_ITEMS = 100  # of a list that a field is set to
 ITEM = "[]"  # in a path: an item of a list
 # What methods of a node return, and now() of its clock; and what gives the value of a message.
+_GET = "self.get_parameter"
 _RETURNED = {
-    "self.get_parameter": "rclpy.parameter.Parameter",
+    _GET: "rclpy.parameter.Parameter",
     "self.declare_parameter": "rclpy.parameter.Parameter",
     "self.get_clock": "rclpy.clock.Clock",
 }
 _NOW = {"rclpy.clock.Clock": "rclpy.time.Time"}
+_ORDERS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)  # == and != take any objects
+_OF_NUMBERS = ("abs", "round", "int", "float", "range", "self.create_timer")
 _LACKS = {"rclpy.parameter.Parameter": ".value", "rclpy.time.Time": ".to_msg()"}
 
 
@@ -374,6 +377,16 @@ class _FunctionUses:
                     yield from self._uses_of_attribute(node, values.get(node))
                 case ast.Call():
                     yield from self._uses_in_call(node)
+            for operand in _operands(node):
+                yield from self._uses_as_number(operand)
+
+    def _uses_as_number(self, operand: ast.expr) -> Iterator[_PlacedUse]:
+        """Yield the use of a parameter in place of its value, as the path of this."""
+        typed = self._type_of(operand)
+        if typed is not None and typed.type == _RETURNED[_GET] and not typed.path:
+            yield self._with_value(
+                _PlacedUse(typed.type, ("value",), position_of(operand)), operand
+            )
 
     def _uses_of_attribute(
         self, node: ast.Attribute, value: ast.expr | None
@@ -417,6 +430,20 @@ class _FunctionUses:
         if isinstance(value, list | tuple) and len(value) <= _MAX_ITEMS:
             return ([*value],)
         return ()
+
+
+def _operands(node: ast.AST) -> Sequence[ast.expr]:
+    """Return what has to be a number for Python to compute a node; a text with % takes any."""
+    match node:
+        case ast.BinOp(left=left, op=operator, right=right) if not isinstance(operator, ast.Mod):
+            return (left, right)
+        case ast.Compare(left=left, ops=operators, comparators=others):
+            return (left, *others) if all(isinstance(each, _ORDERS) for each in operators) else ()
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return (operand,)
+        case ast.Call(func=function, args=[operand, *_]) if dotted(function) in _OF_NUMBERS:
+            return (operand,)
+    return ()
 
 
 def _asked(nodes: Sequence[ast.AST]) -> Iterator[str]:

@@ -159,21 +159,15 @@ def find_meant_module(module: str, known: Collection[str]) -> str | None:
     It is empty if any may be meant. The result is None for a module that may be there: all that
     launch and launch_ros have is known, of other packages only what is like one that is there.
     """
-    if module.partition(".")[0] in python_table().of_ros1:
+    top, _, below = module.partition(".")
+    if top in python_table().of_ros1:
         return ""
-    parts = module.split(".")
-    for end in range(2, len(parts) + 1):
-        above, name = ".".join(parts[: end - 1]), parts[end - 1]
-        inside = [other for other in known if other.startswith(f"{above}.")]
-        beside = [other.removeprefix(f"{above}.") for other in inside]
-        if name in beside or f"{above}.{name}" in known:
-            continue
-        meant = near(name, [other for other in beside if "." not in other])
-        if meant is not None:
-            return ".".join([above, meant, *parts[end:]])
-        is_whole = above in ("launch", "launch_ros") and above in known
-        return "" if is_whole and not name.startswith("_") else None
-    return None
+    if not below or module in known:
+        return None
+    meant = near(module, [other for other in known if other.startswith(f"{top}.")])
+    is_whole = top in ("launch", "launch_ros") and top in known and not below.startswith("_")
+    is_lacking = f"{top}.{below.partition('.')[0]}" not in known
+    return "" if meant is None and is_whole and is_lacking else meant
 
 
 @lru_cache(maxsize=256)

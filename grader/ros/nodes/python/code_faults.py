@@ -45,7 +45,6 @@ from grader.ros.nodes.python.called_functions import (
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.log_calls import wrong_log_calls
 from grader.ros.nodes.python.node_constructors import early_uses
-from grader.ros.nodes.python.parameter_values import parameters_as_values
 from grader.ros.nodes.python.python_calls import WrongCall
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
 from grader.ros.nodes.python.undefined_names import undefined_names, wrong_imports
@@ -178,7 +177,6 @@ def code_faults(
     yield from _early_uses(module, others, attributes)
     yield from _wrong_calls(module, others, releases or RELEASES)
     yield from wrong_log_calls(module.code, module.parts)
-    yield from parameters_as_values(module.code, module.nodes.values())
     yield from search.of_actions()
 
 

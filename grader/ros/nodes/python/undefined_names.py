@@ -170,9 +170,8 @@ def wrong_fields(
             continue
         for value in use.literal if used.name in used.section.fields else ():
             if isinstance(value, RclpyObject):
-                end, words = source.start_offset(value.end), f"`{value.lacks}` is added"
-                fixes = CodeEdits(source).insert(end, value.lacks, words)
                 message = f"the {used.noun} {used.name} is set to {value.words}"
+                fixes = _add_value(source, value)
                 yield CodeFault("field-value", message, use.location, fixes=fixes)
         meant = used.find_meant(find, is_sure=True) if used.is_absent else None
         if meant is not None:
@@ -180,3 +179,17 @@ def wrong_fields(
             fixes = CodeEdits(source).rewrite(start, start + len(used.name), meant)
             message = f"{used.owner} has no {used.noun} {used.name}"
             yield CodeFault("interface-field", message, use.location, fixes=fixes)
+
+
+def computed_objects(source: Source, uses: Iterable[FieldUse]) -> Iterator[CodeFault]:
+    """Yield the objects of rclpy that are computed or compared with as if they were numbers."""
+    for use in uses:
+        for value in use.literal if use.type.startswith("rclpy.") else ():
+            fixes, at = _add_value(source, value), use.location
+            message = f"Python cannot compute or compare with {value.words}"
+            yield CodeFault("call-arguments", message, at, fixes=fixes)
+
+
+def _add_value(source: Source, value: RclpyObject) -> Fixes:
+    end, words = source.start_offset(value.end), f"`{value.lacks}` is added"
+    return CodeEdits(source).insert(end, value.lacks, words)
