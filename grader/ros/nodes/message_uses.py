@@ -257,12 +257,13 @@ class _PlacedUse(NamedTuple):
     rclpy: tuple[str, Position] | None = None  # the type of an object of rclpy, and its end
 
     def placed(self, source: Source) -> FieldUse:
-        literal = self.literal
+        instead = None
         if self.rclpy is not None:
             full, end = self.rclpy
             name = full.rpartition(".")[2]
-            literal = (RclpyObject(name, _LACKS[full], location_in(source, end)),)
-        return FieldUse(self.type, self.path, location_in(source, self.at), literal)
+            instead = RclpyObject(name, _LACKS[full], location_in(source, end))
+        at = location_in(source, self.at)
+        return FieldUse(self.type, self.path, at, self.literal, instead)
 
 
 class _FunctionUses:

@@ -137,25 +137,22 @@ class RclpyObject(NamedTuple):
     lacks: str  # what gives the value: .value
     end: Location  # where this has to be written
 
-    @property
-    def words(self) -> str:
-        """What it is, and how to write its value."""
-        return f"a {self.name} of rclpy: write {self.lacks} behind it"
-
 
 class FieldUse(NamedTuple):
     """A field that code uses of a value whose type is certain.
 
     `type` has the name of the section, as in Python: chat_msgs.srv.Ask.Request; GoalHandle is what
     has the goal as its `request`. `path` are the names of fields down to the one that is used; `[]`
-    is an item of a list. `literal` is what the field is set to: one value, which may be an
-    RclpyObject, or none if it is not known. Items of a list may not be known.
+    is an item of a list. `literal` is what the field is set to: one value, or none if it is not
+    known. Items of a list may not be known. `instead` is an object that is used in place of the
+    value that it has; a number of a computation then has the type of that object.
     """
 
     type: str
     path: tuple[str, ...]
     location: Location
     literal: tuple[Value, ...] = ()
+    instead: RclpyObject | None = None
 
 
 class SynchronisedType(NamedTuple):

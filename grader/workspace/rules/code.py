@@ -49,6 +49,31 @@ _NAME_BINDING = Rule(
     frame="tick/pilot.py",
 )
 
+_VALUE_OBJECT = Rule(
+    "value-object",
+    "code",
+    NO_RUN,
+    MAY_WAIT,
+    "Messages and computations get the values of parameters and times, not these objects.",
+    why=(
+        "get_parameter() and declare_parameter() return a Parameter, now() a Time of rclpy. Python "
+        "raises an error where a number or a field of a message is meant."
+    ),
+    wrong="""
+def __init__(self):
+    super().__init__('pilot')
+    self.declare_parameter('speed', 0.5)
+    self.fast = 2 * self.get_parameter('speed')
+""",
+    right="""
+def __init__(self):
+    super().__init__('pilot')
+    self.declare_parameter('speed', 0.5)
+    self.fast = 2 * self.get_parameter('speed').value
+""",
+    frame="pilot.py",
+)
+
 _CALLBACK_CALL = Rule(
     "callback-call",
     "code",

@@ -146,20 +146,16 @@ def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismat
     is_known = any(kind.startswith(f"{package}/") for kind in types)
     if _may_have_type(workspace, written, is_known=is_known):
         return
-    at = controller.type.location
-    other = other_name("controller", written, workspace.releases)
-    if other is not None:
-        either = corrections(written, at, other.name or None)
-        text = f"{controller.name}.type: {other.message}"
-        yield Mismatch(_CONTROLLER_TYPE, text, at, corrections=either)
-        return
     same_class = [kind for kind in types if kind.partition("/")[2] == class_name]
-    meant = _meant_type(written, same_class, is_known=is_known)
+    other = other_name("controller", written, workspace.releases)
+    meant = other.name or None if other is not None else None
+    meant = meant or _meant_type(written, same_class, is_known=is_known)
     if meant is None and not is_known:
         return
     guess = f"; did you mean {meant!r}?" if meant is not None else ""
     message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
-    is_certain = is_known or near(written, same_class) is not None
+    is_certain = is_known or other is not None or near(written, same_class) is not None
+    at = controller.type.location
     either = corrections(written, at, meant)
     yield Mismatch(_CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
 

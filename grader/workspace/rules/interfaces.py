@@ -25,7 +25,7 @@ from grader.ros.interfaces.known_interfaces import (
 )
 from grader.ros.known.cmake_words import cmake_words
 from grader.ros.known.releases import RELEASES, Release
-from grader.ros.nodes.node_facts import FieldUse, RclpyObject
+from grader.ros.nodes.node_facts import FieldUse
 from grader.ros.nodes.used_fields import FindInterface, UsedField, resolve_field
 from grader.ros.package.package import Package
 from grader.ros.package.package_interfaces import PackageInterfaces
@@ -512,8 +512,6 @@ def _in_words(value: Value) -> str:
     kinds = {bool: "a boolean", int: "an integer", float: "a float", str: "a text"}
     if value is None:
         return "None"
-    if isinstance(value, RclpyObject):
-        return value.words
     return f"{str(value)[:20]!r}, {kinds[type(value)]}"
 
 

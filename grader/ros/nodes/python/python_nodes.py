@@ -51,7 +51,7 @@ from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bind
 from grader.ros.nodes.python.inherited_nodes import OwnClass, with_inherited
 from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
 from grader.ros.nodes.python.rclpy_names import HARMLESS, NODE_CLASSES
-from grader.ros.nodes.python.undefined_names import computed_objects, wrong_fields
+from grader.ros.nodes.python.undefined_names import wrong_fields, wrong_objects
 from grader.ros.nodes.python.unused_publishers import unused_publishers
 from grader.ros.package.entry_points import (
     entry_as_meant,
@@ -289,7 +289,7 @@ def _search_faults(modules: Collection["_Module"], releases: Sequence[Release]) 
         left -= len(source.text)
         try:
             if left >= 0:
-                computed = computed_objects(source, module.field_uses)
+                computed = wrong_objects(source, module.field_uses)
                 of_code = code_faults(text, by_name, attributes, releases)
                 faults[source.path] = [*of_code, *computed]
         except RecursionError:

@@ -11,7 +11,7 @@ from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.package_tables import INTERFACE_KINDS, interface_table, python_table
 from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import Release
-from grader.ros.nodes.node_facts import CodeFault, FieldUse, RclpyObject
+from grader.ros.nodes.node_facts import CodeFault, FieldUse
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.used_fields import resolve_field
 from grader.ros.python.bindings import names_bound
@@ -156,24 +156,16 @@ def _why_wrong(module: str, names: Sequence[str]) -> tuple[str, str]:
 def wrong_fields(
     source: Source, uses: Iterable[FieldUse], releases: Collection[Release]
 ) -> Iterator[CodeFault]:
-    """Yield the fields that well-known types do not have, or that get an object of rclpy.
-
-    Only where it is sure what is meant.
-    """
+    """Yield the fields that well-known types do not have, where it is sure what is meant."""
 
     def find(package: str, name: str) -> Interface | None:
         return (known_interfaces(package, tuple(releases)) or {}).get(name)
 
     for use in uses:
         used = resolve_field(use, find)
-        if used is None:
+        if used is None or not used.is_absent:
             continue
-        for value in use.literal if used.name in used.section.fields else ():
-            if isinstance(value, RclpyObject):
-                message = f"the {used.noun} {used.name} is set to {value.words}"
-                fixes = _add_value(source, value)
-                yield CodeFault("field-value", message, use.location, fixes=fixes)
-        meant = used.find_meant(find, is_sure=True) if used.is_absent else None
+        meant = used.find_meant(find, is_sure=True)
         if meant is not None:
             start = source.offset(use.location.line, use.location.column)
             fixes = CodeEdits(source).rewrite(start, start + len(used.name), meant)
@@ -181,15 +173,14 @@ def wrong_fields(
             yield CodeFault("interface-field", message, use.location, fixes=fixes)
 
 
-def computed_objects(source: Source, uses: Iterable[FieldUse]) -> Iterator[CodeFault]:
-    """Yield the objects of rclpy that are computed or compared with as if they were numbers."""
+def wrong_objects(source: Source, uses: Iterable[FieldUse]) -> Iterator[CodeFault]:
+    """Yield the objects of rclpy that code uses in place of their values."""
     for use in uses:
-        for value in use.literal if use.type.startswith("rclpy.") else ():
-            fixes, at = _add_value(source, value), use.location
-            message = f"Python cannot compute or compare with {value.words}"
-            yield CodeFault("call-arguments", message, at, fixes=fixes)
-
-
-def _add_value(source: Source, value: RclpyObject) -> Fixes:
-    end, words = source.start_offset(value.end), f"`{value.lacks}` is added"
-    return CodeEdits(source).insert(end, value.lacks, words)
+        if use.instead is None:
+            continue
+        name, lacks, end = use.instead
+        is_field = not use.type.startswith("rclpy.")
+        where = f"the field {use.path[-1]} gets" if is_field else "Python cannot compute with"
+        message = f"{where} a {name} of rclpy: write {lacks} behind it"
+        fixes = CodeEdits(source).insert(source.start_offset(end), lacks, f"`{lacks}` is added")
+        yield CodeFault("value-object", message, use.location, fixes=fixes)
