@@ -33,7 +33,6 @@ from grader.workspace.rules.names import (
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
     NO_TOPIC,
-    SIMILAR,
     Rule,
 )
 
@@ -70,7 +69,6 @@ _BRIDGE_FILE = Rule(
     "bridge-file",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A file of bridge rows is a list in YAML.",
     why=(
         "The bridge cannot read its rows from the file. It ends or bridges nothing, so no topic"
@@ -187,7 +185,6 @@ _SENSOR_TOPIC = Rule(
     "sensor-topic",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "The sensor whose messages a bridge takes has a <topic>.",
     why=(
         "Gazebo makes a topic from the names of world, model, link and sensor. The bridge waits"
@@ -230,7 +227,6 @@ _BRIDGE_ROW = Rule(
     "bridge-row",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A row of a bridge has the keys that the bridge needs.",
     why=(
         "The bridge prints an error for the row and ignores it. Other rows work, so only this "
@@ -273,7 +269,6 @@ _BRIDGE_ARGUMENT = Rule(
     "bridge-argument",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "An argument of a bridge names a topic with its types.",
     why=(
         "parameter_bridge prints its usage and ends at the first argument that it cannot parse."
@@ -308,7 +303,6 @@ _BRIDGE_TYPE = Rule(
     "bridge-type",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A bridge converts the types of its rows, and a row has the type of Gazebo's topic.",
     why=(
         "The bridge prints 'Failed to create a bridge for topic', or receives nothing because "
@@ -360,7 +354,6 @@ _BRIDGE_DIRECTION = Rule(
     "bridge-direction",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A row of a bridge goes in the direction of its messages.",
     why=(
         "The bridge then waits on the side where nothing publishes. ros2 topic list shows the "
@@ -525,7 +518,6 @@ _BRIDGE_TOPIC = Rule(
     "bridge-topic",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "Gazebo has the topic of a row of a bridge.",
     why=(
         "The bridge waits for a Gazebo topic without a publisher or reader. ros2 topic list "
@@ -582,7 +574,6 @@ _BRIDGE_CLOCK = Rule(
     "bridge-clock",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A bridge takes the clock from Gazebo.",
     why=(
         "Without /clock the time of a node with use_sim_time stays 0: timers on its clock never"

@@ -44,7 +44,6 @@ _CLASSIC_PLUGIN = Rule(
     "classic-plugin",
     "words",
     NO_WORD,
-    NO_WORD,
     "The plugins of Gazebo Classic and their elements are those of ROS 2.",
     why=(
         "Gazebo Classic does not load a library of ROS 1, and plugins ignore elements that they"

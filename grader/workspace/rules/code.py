@@ -17,7 +17,6 @@ _CODE_SYNTAX = Rule(
     "code-syntax",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "The Python modules of nodes have no syntax errors.",
     why=(
         "Python ends with a SyntaxError before the node is created, so ros2 launch reports that"
@@ -38,7 +37,6 @@ _NAME_BINDING = Rule(
     "name-binding",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "Names and attributes are defined, and format strings get their arguments.",
     why=(
         "Python finds the mistake only when the line runs. The node then stops with a "
@@ -53,7 +51,6 @@ _VALUE_OBJECT = Rule(
     "value-object",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "Messages and computations get the values of parameters and times, not these objects.",
     why=(
         "get_parameter() and declare_parameter() return a Parameter, now() a Time of rclpy. Python "
@@ -78,7 +75,6 @@ _CALLBACK_CALL = Rule(
     "callback-call",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A callback is given as a function, and not called.",
     why=(
         "The function runs once, while the node is created. ROS 2 gets its result, mostly None,"
@@ -107,7 +103,6 @@ _CALLBACK_PARAMETERS = Rule(
     "callback-parameters",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A callback takes the arguments that it is called with.",
     why=(
         "rclpy raises a TypeError at the first message, request or timer event, and the node "
@@ -137,7 +132,6 @@ _CALL_ARGUMENTS = Rule(
     "call-arguments",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A call of rclpy or tf2_ros has the arguments that it takes.",
     why=(
         "Python raises a TypeError at the call, such as 'missing 1 required positional "
@@ -160,7 +154,6 @@ _SERVICE_RESPONSE = Rule(
     "service-response",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "The callback of a service or action returns its response or result on every path.",
     why=(
         "rclpy has nothing to send at the end of the call. A service raises a TypeError that "
@@ -190,7 +183,6 @@ _CONSTRUCTOR_ORDER = Rule(
     "constructor-order",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A node is used after super().__init__().",
     why=(
         "Before that call the object has no publishers, parameters or logger yet. Python raises"
@@ -212,7 +204,6 @@ def __init__(self):
 _GOAL_STATE = Rule(
     "goal-state",
     "code",
-    MAY_WAIT,
     MAY_WAIT,
     "An action server accepts goals, and the function that executes one sets its state.",
     why=(
@@ -239,7 +230,6 @@ _ACTION_RESULT = Rule(
     "action-result",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "The result of an action is the field result of its answer.",
     why=(
         "get_result_async() returns the status and the result in one object. Python raises an "
@@ -260,7 +250,6 @@ _NODE_SPINS = Rule(
     "node-spins",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A node with callbacks is spun.",
     why=(
         "Without spinning, the executor calls no callback: timers never fire and no message "
@@ -281,7 +270,6 @@ _RCLPY_INIT = Rule(
     "rclpy-init",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A node is made after rclpy.init().",
     why=(
         "rclpy raises an error because rclpy.init() has not been called, and the program ends "
@@ -299,7 +287,6 @@ _CALLBACK_WAIT = Rule(
     "callback-wait",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A callback waits for no other callback.",
     why=(
         "The answer is read only after the callback ends, and the callback waits for it: the "
@@ -319,7 +306,6 @@ future.add_done_callback(lambda done: self.get_logger().info(done.result().messa
 _CALLBACK_SLEEP = Rule(
     "callback-sleep",
     "code",
-    MAY_WAIT,
     MAY_WAIT,
     "A callback does not sleep.",
     why=(
@@ -357,7 +343,6 @@ _ENTITY_KEPT = Rule(
     "entity-kept",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A node keeps what it makes.",
     why=(
         "A timer, subscription or listener that no variable holds is destroyed at the end of "
@@ -376,7 +361,6 @@ _PUBLISHER_ACTIVATED = Rule(
     "publisher-activated",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A node with a lifecycle activates its publishers.",
     why=(
         "The publisher drops each message and warns once that it is not activated. ros2 topic "
@@ -407,7 +391,6 @@ _BUFFER_LISTENER = Rule(
     "buffer-listener",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A buffer of transforms has a listener.",
     why=(
         "No transform reaches the buffer, so each lookup reports that the frame does not exist,"
@@ -430,7 +413,6 @@ _ROTATION_SET = Rule(
     "rotation-set",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A transform that is sent has a rotation.",
     why=(
         "tf2 ignores a transform with a quaternion of zeros and prints "
@@ -467,7 +449,6 @@ _COMPONENT_MACRO = Rule(
     "component-macro",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A source file registers the component that CMakeLists.txt names.",
     why=(
         "The library then has no factory for the class. A container fails to load the "
@@ -488,7 +469,6 @@ _PROGRAM_MAIN = Rule(
     "program-main",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A program has a main(), and a script calls it.",
     why=(
         "The linker stops the build with 'undefined reference to main', and no program is "
@@ -508,7 +488,6 @@ _RCLCPP_INIT = Rule(
     "rclcpp-init",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A C++ program makes its nodes after rclcpp::init().",
     why=(
         "rclcpp throws an exception when the node is created without a valid context, and the "
@@ -540,7 +519,6 @@ _COMPONENT_CONSTRUCTOR = Rule(
     "component-constructor",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A component has a constructor that takes NodeOptions.",
     why=(
         "The registration macro creates the node from NodeOptions. The compiler finds no "
@@ -615,7 +593,6 @@ _NAME_VALID = Rule(
     "name-valid",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "ROS 2 accepts the names of nodes, topics, services and actions in code.",
     why=(
         "rcl refuses the name: rclpy and rclcpp raise an exception that shows the invalid "

@@ -67,7 +67,6 @@ _NODE_NAME = Rule(
     "node-name",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "The nodes of a launch file have different names.",
     why=(
         "ros2 node list warns of an exact name that two nodes share. A parameter or service "
@@ -112,7 +111,6 @@ def _broadcasters(workspace: Workspace) -> set[str]:
 _ONE_JOINT_STATE = Rule(
     "one-joint-state",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "One program publishes the positions of the joints.",
     why=(
@@ -159,7 +157,6 @@ def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
 _JOINT_STATES = Rule(
     "joint-states",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "Something publishes the positions of the joints.",
     why=(
@@ -253,7 +250,6 @@ _ROBOT_PUBLISHED = Rule(
     "robot-published",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "robot_state_publisher gives the controller manager the robot.",
     why=(
         "The controller manager waits for the topic robot_description and loads no hardware. "
@@ -301,7 +297,6 @@ def _sim_time(workspace: Workspace) -> Iterator[Location]:
 _CLOCK_PUBLISHED = Rule(
     "clock-published",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "Something publishes the clock of nodes with use_sim_time.",
     why=(
@@ -419,7 +414,6 @@ def _is_told(workspace: Workspace) -> bool:
 _SIMULATION_TIME = Rule(
     "simulation-time",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "The nodes of a simulation use its time.",
     why=(

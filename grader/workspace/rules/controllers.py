@@ -38,7 +38,6 @@ from grader.workspace.rules.names import (
 )
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -77,7 +76,6 @@ _CONTROLLER_HARDWARE = Rule(
     "controller-hardware",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A robot with a controller manager has <ros2_control>.",
     why=(
         "The controller manager parses <ros2_control> for its hardware. Without the element it "
@@ -122,7 +120,6 @@ _CONTROLLER_TYPE = Rule(
     "controller-type",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "The type of a controller is one that a package has.",
     why=(
         "pluginlib finds no such class. The controller manager prints 'Loader for controller "
@@ -192,7 +189,6 @@ _CONTROLLER_PARAMETERS = Rule(
     "controller-parameters",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A controller that needs parameters has some.",
     why=(
         "Without names of joints or interfaces the controller cannot be configured, or it moves"
@@ -240,7 +236,6 @@ _CONTROLLER_LIST = Rule(
     "controller-list",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A parameter of a controller that needs a list has one.",
     why=(
         "The controller declares a list, so a string raises a parameter type exception. The "
@@ -277,7 +272,6 @@ _CLAIMED_ONCE = Rule(
     "claimed-once",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A controller claims each command interface once.",
     why=(
         "The resource manager hands out each command interface once. The second claim raises an"
@@ -377,7 +371,6 @@ _CONTROLLER_INTERFACE = Rule(
     "controller-interface",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "<ros2_control> has the interfaces of joints that a controller needs.",
     why=(
         "The controller manager does not activate a controller whose interfaces are missing. "

@@ -75,7 +75,6 @@ _BUILD_ORDER = Rule(
     "build-order",
     "dependencies",
     BUILT_LATER,
-    BUILT_LATER,
     "package.xml declares the packages of the workspace that CMake needs.",
     why=(
         "colcon may build the other package later, and find_package() then stops a clean build."
@@ -144,7 +143,6 @@ DEPENDENCY_DECLARED = Rule(
     "dependency-declared",
     "dependencies",
     NO_DEPENDENCY,
-    LENT,
     "package.xml declares the packages that the files of the package use.",
     why=(
         "rosdep installs and colcon builds first only what is declared. On a new machine or in "
@@ -157,6 +155,7 @@ DEPENDENCY_DECLARED = Rule(
         "rover.launch.py": "Node(package='turtlesim', executable='turtlesim_node'),",
     },
     at="launch/rover.launch.py",
+    doubtful_kind=LENT,
 )
 
 
@@ -199,7 +198,6 @@ def _undeclared(
 _DEPENDENCY_KIND = Rule(
     "dependency-kind",
     "builds",
-    FORM,
     FORM,
     "package.xml declares what a build needs for it, and what a run needs for that.",
     why=(

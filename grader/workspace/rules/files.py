@@ -264,7 +264,6 @@ _FILE_PACKAGE = Rule(
     "file-package",
     "files",
     NO_FILE,
-    SIMILAR,
     "The package of a path exists.",
     why=(
         "get_package_share_directory() raises PackageNotFoundError for an unknown package. A "
@@ -304,7 +303,6 @@ _LAUNCH_FILE_NAME = Rule(
     "launch-file-name",
     "files",
     SIMILAR,
-    SIMILAR,
     "An included launch file of a well-known package exists.",
     why=(
         "ros2 launch looks for the file in the share folder of the package. It stops with an "
@@ -336,7 +334,6 @@ FILE_INSTALLED = Rule(
     "file-installed",
     "files",
     NO_FILE,
-    SIMILAR,
     "A build installs each file at the path that another file names.",
     why=(
         "Programs look in the share folder of the install space: an include stops ros2 launch "
@@ -452,7 +449,6 @@ _MAP_IMAGE = Rule(
     "map-image",
     "files",
     NO_FILE,
-    SIMILAR,
     "The image of a map exists.",
     why=(
         "map_server fails to load the map when it is configured. The lifecycle manager then "
@@ -497,7 +493,6 @@ _WORLD_MODEL = Rule(
     "world-model",
     "files",
     NO_FILE,
-    SIMILAR,
     "The models that a world includes exist.",
     why=(
         "Gazebo prints that it is unable to find the URI of the include, and the model is "

@@ -78,7 +78,6 @@ _FOOTPRINT_SIZE = Rule(
     "footprint-size",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "The footprint of a costmap holds the robot.",
     why=(
         "Nav2 plans for a robot that is smaller than the real one. It drives through gaps that "

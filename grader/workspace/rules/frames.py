@@ -41,7 +41,6 @@ from grader.workspace.rules.names import (
 )
 from grader.workspace.rules.rule_table import (
     NO_FRAME,
-    SIMILAR,
     Rule,
 )
 
@@ -282,7 +281,6 @@ _ROOT_FRAME = Rule(
     "root-frame",
     "frames",
     NO_FRAME,
-    SIMILAR,
     "A frame that code publishes is not a misspelling of the root of the robot.",
     why=(
         "The odometry and the robot are then two trees. tf2 finds no transform from odom to a "
@@ -374,7 +372,6 @@ _FRAME_PARENT = Rule(
     "frame-parent",
     "frames",
     NO_FRAME,
-    SIMILAR,
     "A link of the robot gets no second parent.",
     why=(
         "tf2 keeps one parent of each frame, that of the last message. The link jumps between "

@@ -67,7 +67,6 @@ _GAIN_SET = Rule(
     "gain-set",
     "effects",
     MOVES_NOTHING,
-    MOVES_NOTHING,
     "A controller that computes efforts or velocities with gains has gains.",
     why=(
         "All gains are 0 by default, so each command is 0. The controller is active and accepts"

@@ -24,7 +24,6 @@ from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
     NO_TOPIC,
     NO_WORD,
-    SIMILAR,
     Rule,
 )
 
@@ -55,7 +54,6 @@ def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
 _SIMULATION_STARTED = Rule(
     "simulation-started",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "Something starts the Gazebo in which a robot is created.",
     why=(
@@ -101,7 +99,6 @@ _SENSOR_SYSTEM = Rule(
     "sensor-system",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A world has the systems that its sensors need.",
     why=(
         "Gazebo updates a sensor only if the world loads the system for its type. Without it "
@@ -176,7 +173,6 @@ _CREATED_WORLD = Rule(
     "created-world",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A robot is created in the world that Gazebo runs.",
     why=(
         "'create' calls a service of the named world, which Gazebo does not offer. It waits or "
@@ -246,7 +242,6 @@ _CREATE_OPTION = Rule(
     "create-option",
     "words",
     NO_WORD,
-    NO_WORD,
     "The program that creates a robot in Gazebo has the given options.",
     why=(
         "The program 'create' reports no unknown options. The robot appears with another name "
@@ -279,7 +274,6 @@ _CREATED_FROM = Rule(
     "created-from",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The program that creates a robot in Gazebo gets its source.",
     why=(
         "The program 'create' prints an error and ends, so no robot appears in Gazebo. Spawners"
@@ -306,7 +300,6 @@ _CREATED_TOPIC = Rule(
     "created-topic",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A robot is created from the topic that robot_state_publisher has.",
     why=(
         "'create' prints 'Waiting messages on topic' again and again, because nothing publishes"
@@ -352,7 +345,6 @@ _BRIDGE_TOPICS = Rule(
     "bridge-topics",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A bridge has topics.",
     why=(
         "The program passes no message between Gazebo and ROS 2: no sensor data arrive, and "

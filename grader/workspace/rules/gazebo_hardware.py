@@ -8,7 +8,6 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -38,7 +37,6 @@ _GAZEBO_HARDWARE = Rule(
     "gazebo-hardware",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "The plugin of ros2_control loads hardware of its own package.",
     why=(
         "Each plugin looks only for hardware classes of its own package. The hardware is not "

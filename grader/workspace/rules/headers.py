@@ -177,7 +177,6 @@ _OWN_HEADER = Rule(
     "own-header",
     "builds",
     NOT_COMPILED,
-    NOT_COMPILED,
     "The headers of a package that a compiled file includes exist.",
     why=(
         "The compiler stops with 'No such file or directory', and colcon does not build the "
@@ -223,7 +222,6 @@ def _names_in(headers: _Headers, package: Package) -> list[str]:
 _HEADER_INSTALLED = Rule(
     "header-installed",
     "builds",
-    NOT_COMPILED,
     NOT_COMPILED,
     "A build installs the headers that other packages include.",
     why=(

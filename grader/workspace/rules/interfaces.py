@@ -34,7 +34,6 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, Undecided, corrections
 from grader.workspace.rules.rule_table import (
     NO_INTERFACE,
-    SIMILAR,
     Rule,
 )
 
@@ -79,7 +78,6 @@ _INTERFACE_GROUP = Rule(
     "interface-group",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "package.xml of a package with interfaces has <member_of_group>.",
     why=(
         "rosidl_generate_interfaces() stops CMake with an error. colcon builds neither the "
@@ -116,7 +114,6 @@ _INTERFACE_FILE = Rule(
     "interface-file",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "rosidl reads the files of messages, services and actions.",
     why=(
         "The build of the package stops at the file. None of its messages are generated, and "
@@ -166,7 +163,6 @@ _INTERFACE_DEPENDENCY = Rule(
     "interface-dependency",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "rosidl_generate_interfaces() names the packages whose types fields have.",
     why=(
         "The build stops, because the generated code includes message headers of the other "
@@ -254,7 +250,6 @@ _INTERFACE_TYPE = Rule(
     "interface-type",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "The messages, services and actions that code and interface files use exist.",
     why=(
         "A Python node ends at its start with an ImportError or ModuleNotFoundError. A C++ file"
@@ -372,7 +367,6 @@ _INTERFACE_FIELD = Rule(
     "interface-field",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "The fields and constants that code uses exist.",
     why=(
         "Python raises an AttributeError when the line runs, often first in a callback. A C++ "
@@ -414,7 +408,6 @@ _FIELD_VALUE = Rule(
     "field-value",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "A field is set to a value of its type.",
     is_of_type=True,
     why=(

@@ -76,7 +76,6 @@ _INPUT_TYPE = Rule(
     "input-type",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "A well-known program reads a topic with the type that it has.",
     why=(
         "The program subscribes with its own type and is not matched with the publisher. It "
@@ -170,7 +169,6 @@ _INPUT_PUBLISHED = Rule(
     "input-published",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "The topic that a parameter names is published.",
     why=(
         "The node starts without an error and never gets the input. A filter estimates without "
@@ -240,7 +238,6 @@ _REMAPPED_TOPIC = Rule(
     "remapped-topic",
     "words",
     NO_WORD,
-    NO_WORD,
     "A remapping of a well-known program names a topic that it has.",
     why=(
         "A remapping without a match does nothing and prints nothing. The program waits on its "
@@ -281,7 +278,6 @@ def _other_remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
 _DISPLAY_TYPE = Rule(
     "display-type",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "A display of RViz reads a topic with the type that it has.",
     why=(

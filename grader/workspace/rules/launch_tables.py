@@ -8,7 +8,6 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch
 from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
-    SIMILAR,
     Rule,
 )
 
@@ -19,7 +18,6 @@ _PARAMETER_TABLE = Rule(
     "parameter-table",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The parameters of a node in a launch file are a dictionary.",
     why=(
         "launch_ros takes a set, as in {'speed', 2.0}, for the path of a parameter file. The "

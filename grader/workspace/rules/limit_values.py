@@ -96,7 +96,6 @@ _JOINT_LIMIT = Rule(
     "joint-limit",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "The limits in a file are within those of the robot's joints.",
     why=(
         "MoveIt or ros2_control then allows motions that the joint is not made for. A "

@@ -38,7 +38,6 @@ _COLLISION_PLACE = Rule(
     "collision-place",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "A collision with the shape of a visual is where that is.",
     why=(
         "Gazebo and MoveIt compute contacts with the collision only. The robot collides with "
@@ -88,7 +87,6 @@ def _is_simulated(robot: KnownRobot) -> bool:
 _GAZEBO_INERTIA = Rule(
     "gazebo-inertia",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "A link that a joint moves in Gazebo has a mass.",
     why=(

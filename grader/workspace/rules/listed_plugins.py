@@ -32,7 +32,6 @@ _PLUGIN_LISTED = Rule(
     "plugin-listed",
     "parameters",
     NO_EFFECT,
-    NO_EFFECT,
     "A list of plugins names each layer that is configured.",
     why=(
         "The costmap loads only listed layers and does not report others. Without "

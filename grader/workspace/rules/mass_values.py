@@ -66,7 +66,6 @@ _CENTRE_OF_MASS = Rule(
     "centre-of-mass",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "The centre of mass of a link is within its shapes.",
     why=(
         "Gazebo simulates the mass where the link is not. The robot may tip over, swing or "
@@ -113,7 +112,6 @@ def _centre_outside(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
 _INERTIA_PLACE = Rule(
     "inertia-place",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "The inertia of a shape about its middle has its <origin> there.",
     why=(
@@ -183,7 +181,6 @@ _INERTIA_SIZE = Rule(
     "inertia-size",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "The inertia of a link is that of a body of its size.",
     why=(
         "Gazebo simulates a body that hardly starts or stops to rotate. Joints respond slowly, "
@@ -243,7 +240,6 @@ def _extents(placed: list[PlacedShape]) -> list[tuple[float, float]]:
 _INERTIA_AXIS = Rule(
     "inertia-axis",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "The inertia of a cylinder is that about its own axis.",
     why=(

@@ -17,7 +17,6 @@ from grader.workspace.rules.names import Compared, Fact, Mismatch
 from grader.workspace.rules.rule_table import (
     NO_SERVICE,
     NO_TOPIC,
-    SIMILAR,
     Rule,
 )
 
@@ -46,7 +45,6 @@ _TOPIC_TYPE = Rule(
     "topic-type",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "Publishers and subscriptions of a topic have one type.",
     is_of_type=True,
     why=(
@@ -69,7 +67,6 @@ _SERVICE_TYPE = Rule(
     "service-type",
     "services",
     NO_SERVICE,
-    SIMILAR,
     "A service or action is called with the type with which it is served.",
     is_of_type=True,
     why=(
@@ -193,7 +190,6 @@ _TOPIC_QUALITY = Rule(
     "topic-quality",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A publisher offers the quality of service that a subscription needs.",
     why=(
         "The middleware does not connect the two. ROS 2 warns of incompatible QoS, and no "

@@ -35,7 +35,6 @@ _MESSAGE_STAMP = Rule(
     "message-stamp",
     "messages",
     NO_MESSAGE,
-    NO_MESSAGE,
     "Messages and transforms have a stamp where what reads them needs it.",
     why=(
         "tf2 ignores a second transform with the same stamp, and robot_state_publisher skips "

@@ -9,7 +9,6 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -40,7 +39,6 @@ _MIMIC_COMMAND = Rule(
     "mimic-command",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A joint that mimics another one has no command interface.",
     why=(
         "From Jazzy on ros2_control raises an error when it parses the robot. No hardware is "

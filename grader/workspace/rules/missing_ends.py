@@ -28,7 +28,6 @@ from grader.workspace.rules.names import (
 from grader.workspace.rules.rule_table import (
     NO_SERVICE,
     NO_TOPIC,
-    SIMILAR,
     Rule,
 )
 
@@ -91,7 +90,6 @@ _TOPIC_PUBLISHED = Rule(
     "topic-published",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "The topic that a node subscribes to is published.",
     why=(
         "The subscription waits without an error, and its callback is never called. ros2 topic "
@@ -188,7 +186,6 @@ _TOPIC_SUBSCRIBED = Rule(
     "topic-subscribed",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "The topic that a node publishes is the one that a controller waits for.",
     why=(
         "Commands are published, and the robot does not move. ros2 topic info shows a "
@@ -256,7 +253,6 @@ _SERVICE_SERVED = Rule(
     "service-served",
     "services",
     NO_SERVICE,
-    SIMILAR,
     "The service or action that a node calls is served.",
     why=(
         "The client waits for a server that does not exist: wait_for_service() or "

@@ -16,7 +16,6 @@ from grader.workspace.rules.names import Fact, Mismatch, Use, among, corrections
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
     NO_PARAMETER,
-    SIMILAR,
     Rule,
 )
 from grader.workspace.rules.spawners import started_controllers
@@ -51,7 +50,6 @@ _PLANNING_LIST = Rule(
     "planning-list",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The adapters of a planning pipeline of MoveIt are a list from Jazzy on.",
     is_of_type=True,
     why=(
@@ -142,7 +140,6 @@ _MOVEIT_CONTROLLER = Rule(
     "moveit-controller",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A spawner starts the controllers that MoveIt commands.",
     why=(
         "Planning succeeds and execution fails: MoveIt waits for an action that no controller "
@@ -207,7 +204,6 @@ _MOVEIT_ACTION = Rule(
     "moveit-action",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "MoveIt names the action of its controller.",
     why=(
         "MoveIt ignores the controller or waits for an action that does not exist. It plans, "
@@ -268,7 +264,6 @@ _MOVEIT_JOINTS = Rule(
     "moveit-joints",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "MoveIt gives a controller the joints that it has.",
     why=(
         "The controller rejects trajectories for joints that it does not have, or MoveIt finds "

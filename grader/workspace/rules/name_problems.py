@@ -21,7 +21,6 @@ _FILE_USED = Rule(
     "file-used",
     "files",
     UNUSED,
-    UNUSED,
     "Another file names each file of the robot.",
     why=(
         "No program loads the file, so an edit of it changes nothing. Parameters keep their "

@@ -13,7 +13,6 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch
 from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
-    SIMILAR,
     Rule,
 )
 
@@ -41,7 +40,6 @@ _PARAMETER_NAMESPACE = Rule(
     "parameter-namespace",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The section of a node has the node's namespace.",
     why=(
         "rcl compares the key with the full name of the node. The node ignores the section "

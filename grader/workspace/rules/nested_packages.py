@@ -17,7 +17,6 @@ _PACKAGE_NESTED = Rule(
     "package-nested",
     "builds",
     NOT_BUILT,
-    NOT_BUILT,
     "No package is below the folder of another one, where colcon does not look.",
     why=(
         "colcon does not search below a package. The inner one is not built, and ros2 launch "

@@ -22,7 +22,6 @@ _OLDER_GAZEBO = Rule(
     "older-gazebo",
     "words",
     FORM,
-    FORM,
     "Plugins have the names of Gazebo, where the workspace uses that in place of Ignition.",
     why=(
         "Gazebo still loads such plugins with a warning. A later release does not know their "

@@ -121,7 +121,6 @@ _HOME_PATH = Rule(
     "home-path",
     "machine",
     ONE_MACHINE,
-    ONE_MACHINE,
     "No file names a folder of one user's machine.",
     why=(
         "The folder does not exist for another user, in a container or on the robot. The "
@@ -162,7 +161,6 @@ def _said_paths(launch: Launch) -> list[str]:
 _RELEASE_PATH = Rule(
     "release-path",
     "machine",
-    ONE_MACHINE,
     ONE_MACHINE,
     "Files of ROS 2 are found by packages, and not in a release's folder.",
     why=(
@@ -239,7 +237,6 @@ def _is_in_comment(text: str, offset: int) -> bool:
 _ENVIRONMENT_VARIABLE = Rule(
     "environment-variable",
     "machine",
-    ONE_MACHINE,
     ONE_MACHINE,
     "A launch file gives an environment variable a default.",
     why=(

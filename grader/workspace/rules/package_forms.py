@@ -25,7 +25,6 @@ _PYTHON_BUILD_TYPE = Rule(
     "python-build-type",
     "builds",
     NO_BUILD,
-    NO_BUILD,
     "package.xml of a package with setup.py has a build type.",
     why=(
         "colcon takes the package for a CMake package and stops because it has no "
@@ -86,7 +85,6 @@ _DEPENDENCY_ONCE = Rule(
     "dependency-once",
     "builds",
     FORM,
-    FORM,
     "package.xml declares a dependency once.",
     why=(
         "The second line has no effect. If only one of the two is removed, the dependency is still "
@@ -124,7 +122,6 @@ _MANIFEST_TEXT = Rule(
     "manifest-text",
     "builds",
     FORM,
-    FORM,
     "package.xml has no text beside its elements.",
     why=(
         "The tools ignore the text without a message. A dependency that is written there is "
@@ -153,7 +150,6 @@ def _loose_texts(manifest: Manifest) -> Iterator[Mismatch]:
 _PACKAGE_NAME = Rule(
     "package-name",
     "builds",
-    FORM,
     FORM,
     "The name of a package has small letters, digits and underscores.",
     why=(
@@ -197,7 +193,6 @@ def _capital_names(manifest: Manifest) -> Iterator[Mismatch]:
 _PACKAGE_VERSION = Rule(
     "package-version",
     "builds",
-    FORM,
     FORM,
     "setup.py has the version that package.xml has.",
     why=(
@@ -249,7 +244,6 @@ def _other_versions(manifest: Manifest, setup: Source) -> Iterator[Mismatch]:
 _SETUP_KEY = Rule(
     "setup-key",
     "builds",
-    FORM,
     FORM,
     "The keys of setup.cfg have underscores, and no dashes.",
     why=(

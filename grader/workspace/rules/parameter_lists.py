@@ -15,7 +15,6 @@ from grader.workspace.rules.names import Fact, Mismatch
 from grader.workspace.rules.parameters import parameter_trees
 from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
-    SIMILAR,
     Rule,
 )
 
@@ -42,7 +41,6 @@ _PARAMETER_LIST = Rule(
     "parameter-list",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "A list in a parameter file has values of one type, and a key has a value.",
     why=(
         "rcl refuses the whole file, for example with 'Sequence should be of same type', so the"

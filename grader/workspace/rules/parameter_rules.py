@@ -32,7 +32,6 @@ from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
     NO_SUCH_PARAMETER,
     OTHER_RELEASE,
-    SIMILAR,
     Rule,
 )
 
@@ -119,7 +118,6 @@ _PARAMETER_NAME = Rule(
     "parameter-name",
     "parameters",
     NO_SUCH_PARAMETER,
-    NO_SUCH_PARAMETER,
     "The parameters of a well-known node are those that it has.",
     why=(
         "ROS 2 ignores a value for an undeclared parameter without a message. The node runs "
@@ -186,7 +184,6 @@ _PARAMETER_RELEASE = Rule(
     "parameter-release",
     "parameters",
     OTHER_RELEASE,
-    OTHER_RELEASE,
     "The parameters of a well-known node are those of the stated release.",
     why=(
         "A node of another release does not declare the parameter, so the value is ignored "
@@ -249,7 +246,6 @@ PARAMETER_REQUIRED = Rule(
     "parameter-required",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "A node gets the parameters without which it stops.",
     why=(
         "The node prints an error and ends, so ros2 launch reports that the process has died. A"
@@ -269,7 +265,6 @@ PARAMETER_TYPE = Rule(
     "parameter-type",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "A parameter has the type that its node declares.",
     is_of_type=True,
     why=(
@@ -287,7 +282,6 @@ _PARAMETER_VALUE = Rule(
     "parameter-value",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "A parameter has a value that its node accepts.",
     why=(
         "The node validates the value and refuses it with an error at its start. It stops, or "
@@ -701,7 +695,6 @@ class _NodeReader:
 _PARAMETER_EFFECT = Rule(
     "parameter-effect",
     "parameters",
-    NO_EFFECT,
     NO_EFFECT,
     "The parameters of a well-known node have an effect under the values of others.",
     why=(

@@ -50,7 +50,6 @@ from grader.workspace.rules.parameter_rules import PARAMETER_REQUIRED, PARAMETER
 from grader.workspace.rules.renamed_nodes import key_of_program_name
 from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
-    SIMILAR,
     Rule,
 )
 
@@ -99,7 +98,6 @@ _PARAMETER_FILE = Rule(
     "parameter-file",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "An installed YAML file can be parsed, and a parameter file has no aliases.",
     why=(
         "A node that gets the file ends at its start with 'Couldn't parse params file'. A "
@@ -313,7 +311,6 @@ _PARAMETER_NODE = Rule(
     "parameter-node",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "A parameter file has a section for the node that gets it.",
     why=(
         "A node ignores sections with other names without a message. It starts with the "
@@ -403,7 +400,6 @@ _PARAMETER_KEY = Rule(
     "parameter-key",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The parameters of a node are below one key ros__parameters.",
     why=(
         "rcl refuses the whole file with an error such as 'Cannot have a value before "
@@ -665,7 +661,6 @@ _FILTER_SIZE = Rule(
     "filter-size",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "An input of a robot_localization filter has 15 values.",
     why=(
         "robot_localization reads each value by its position and does not check their number. A"
@@ -716,7 +711,6 @@ _ROBOT_TEXT = Rule(
     "robot-text",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "robot_description is the text of a robot.",
     why=(
         "robot_state_publisher parses the path as XML and ends with 'Unable to initialize "
@@ -760,7 +754,6 @@ _ROBOT_EXPANDED = Rule(
     "robot-expanded",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The text of a robot is what xacro makes of its file.",
     why=(
         "Parsers of URDF know no macros and no ${...}. robot_state_publisher stops, or it "
@@ -820,7 +813,6 @@ _ROBOT_LINKS = Rule(
     "robot-links",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The file of a robot that a launch file starts has links.",
     why=(
         "A robot without a link has no root, so the parser refuses it. robot_state_publisher "
@@ -1012,7 +1004,6 @@ _PLUGIN_NAME = Rule(
     "plugin-name",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The class of a plugin is one that exists.",
     why=(
         "pluginlib prints that the class does not exist, with the declared types. The node is "

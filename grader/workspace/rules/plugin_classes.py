@@ -14,7 +14,6 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, corrections, warning
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -91,7 +90,6 @@ _PLUGIN_CLASS = Rule(
     "plugin-class",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A package of the workspace describes the controller or hardware that a file names.",
     why=(
         "pluginlib finds classes by the names in description files. For another name it reports"
@@ -162,7 +160,6 @@ _PLUGIN_EXPORTED = Rule(
     "plugin-exported",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "CMakeLists.txt exports the files that describe plugins.",
     why=(
         "pluginlib reads only description files that are registered in the ament index. It "
@@ -206,7 +203,6 @@ _PLUGIN_LIBRARY = Rule(
     "plugin-library",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A target makes the library of a file that describes plugins.",
     why=(
         "pluginlib knows the class, but finds no library to load it from. It raises a "

@@ -38,10 +38,8 @@ from grader.workspace.rules.names import (
     warning,
 )
 from grader.workspace.rules.rule_table import (
-    MAY_WAIT,
     NO_PROGRAM,
     NO_RUN,
-    SIMILAR,
     Rule,
 )
 
@@ -53,7 +51,6 @@ _PROGRAM_EXISTS = Rule(
     "program-exists",
     "programs",
     NO_PROGRAM,
-    SIMILAR,
     "The package of a started node has its program.",
     why=(
         "ros2 launch prints that the executable is not found on the libexec directory, and "
@@ -118,7 +115,6 @@ _ENTRY_POINT = Rule(
     "entry-point",
     "programs",
     NO_PROGRAM,
-    SIMILAR,
     "An entry point names a function that exists.",
     why=(
         "colcon build succeeds, because it does not import the module. The program then ends at"
@@ -153,7 +149,6 @@ _MODULE_INSTALLED = Rule(
     "module-installed",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A build installs the modules of the package that a node imports.",
     why=(
         "The program works in the source folder. After colcon build it ends at its start with a"
@@ -192,7 +187,6 @@ _ENTRY_MODULE = Rule(
     "entry-module",
     "programs",
     NO_PROGRAM,
-    SIMILAR,
     "An entry point runs the module of its own name, if that has such a function.",
     why=(
         "ros2 run starts the node of another module without an error. The node with the name of"
@@ -259,7 +253,6 @@ _PROGRAM_RUNS = Rule(
     "program-runs",
     "programs",
     NO_PROGRAM,
-    SIMILAR,
     "The first line of a script names an interpreter.",
     why=(
         "Linux does not execute the script: ros2 run and ros2 launch fail with 'Exec format "

@@ -32,8 +32,6 @@ from grader.workspace.rules.names import (
 from grader.workspace.rules.rule_table import (
     NO_KEY,
     NO_PACKAGE,
-    NOWHERE,
-    UNKNOWN_KEY,
     Rule,
 )
 from grader.workspace.rules.used_packages import calls_in, named_in_robots
@@ -83,7 +81,6 @@ _ROSDEP_KEY = Rule(
     "rosdep-key",
     "keys",
     NO_KEY,
-    UNKNOWN_KEY,
     "rosdep knows the dependencies in package.xml that the workspace does not have.",
     why=(
         "rosdep install stops with 'Cannot locate rosdep definition' and installs none of the "
@@ -241,7 +238,6 @@ _PACKAGE_EXISTS = Rule(
     "package-exists",
     "dependencies",
     NO_PACKAGE,
-    NOWHERE,
     "The packages that files name exist: in the workspace, or in a release of ROS 2.",
     why=(
         "Launch files and nodes stop with PackageNotFoundError when they ask for its share "

@@ -62,7 +62,6 @@ _OBSTACLE_RANGE = Rule(
     "obstacle-range",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "A costmap asks for no obstacles beyond the range of its lidar.",
     why=(
         "The lidar does not measure that far. The costmap marks obstacles later than the value "
@@ -98,7 +97,6 @@ def _too_far(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mism
 _SCAN_RATE = Rule(
     "scan-rate",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "A costmap expects scans no more often than its lidar measures.",
     why=(
@@ -136,7 +134,6 @@ def _too_often(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mi
 _PUBLISH_RATE = Rule(
     "publish-rate",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "A controller publishes no more often than it is updated.",
     why=(

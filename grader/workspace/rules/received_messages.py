@@ -44,7 +44,6 @@ _MESSAGE_HEADER = Rule(
     "message-header",
     "messages",
     NO_MESSAGE,
-    NO_MESSAGE,
     "The messages of a filter or synchroniser have a header.",
     why=(
         "A synchroniser in Python drops messages without a header. One in C++ takes their time "
@@ -95,7 +94,6 @@ def _has_header(workspace: Workspace, name: str) -> bool | None:
 _MESSAGE_DEPTH = Rule(
     "message-depth",
     "messages",
-    NO_MESSAGE,
     NO_MESSAGE,
     "A publisher or subscription keeps messages.",
     why=(
@@ -156,7 +154,6 @@ def _not_converted(
 _IMAGE_ENCODING = Rule(
     "image-encoding",
     "messages",
-    NO_MESSAGE,
     NO_MESSAGE,
     "cv_bridge converts the images of a topic to the asked encoding.",
     why=(

@@ -33,7 +33,6 @@ _NAMES_COMPARED = Rule(
     "names-compared",
     "files",
     UNCOMPARED,
-    UNCOMPARED,
     "All names of a workspace are compared.",
     why=(
         "Mistakes in the remaining names appear only when the workspace runs. A rubric leaves "
@@ -65,7 +64,6 @@ def compared_names(workspace: Workspace) -> Iterator[Problem]:
 _NAME_RELEASE = Rule(
     "name-release",
     "words",
-    OTHER_RELEASE,
     OTHER_RELEASE,
     "Packages, programs, controllers, plugins and topics are of the stated release.",
     why=(

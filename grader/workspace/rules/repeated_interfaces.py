@@ -7,7 +7,6 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, warning
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -15,7 +14,6 @@ _INTERFACE_ONCE = Rule(
     "interface-once",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A robot has each command interface in one <ros2_control> only.",
     why=(
         "Newer releases of ros2_control refuse the whole robot. Older ones use only the first "

@@ -96,6 +96,19 @@ NO_BUILD = _warning("REF040", "Package that colcon does not build")
 UNREAD = Kind("REF041", "Parameter or argument that nothing reads", severity="note", effect="other")
 LENT = _warning("REF042", "Package that package.xml declares only indirectly")
 NAME_CATALOGUE = kinds_in(globals().values())
+_OF_NAMES = (
+    *(NO_FILE, NO_FRAME, NO_CONTROLLER, NO_PARAMETER, NO_ARGUMENT),
+    *(NO_PROGRAM, NO_TOPIC, NO_SERVICE, NO_INTERFACE),
+)
+# The kinds of what is not certain, where they are others.
+_DOUBTFUL: Mapping[Kind, Kind] = {
+    **dict.fromkeys(_OF_NAMES, SIMILAR),
+    NO_RUN: MAY_WAIT,
+    WRONG_VALUE: OTHER_VALUE,
+    WRONG_TRANSFORM: OTHER_TRANSFORM,
+    NO_KEY: UNKNOWN_KEY,
+    NO_PACKAGE: NOWHERE,
+}
 
 
 class Symptom(NamedTuple):
@@ -123,7 +136,6 @@ class Rule(NamedTuple):
     name: str  # which never changes; no check and no criterion has it
     family: AnyFamily  # of names_agree
     kind: Kind
-    doubtful: Kind
     sentence: str  # what is right
     is_of_type: bool = False  # whether a value or a topic has another type
     why: str = ""  # what happens where it is broken
@@ -133,6 +145,12 @@ class Rule(NamedTuple):
     frame: str = "rover.launch.py"  # a row of docs/examples/frames.toml, or a file of its own
     beside: Mapping[str, str] = {}  # other files of the example, by their frames
     at: str = ""  # the path of the file with the finding, where it is another one
+    doubtful_kind: Kind | None = None  # if it is not that which belongs to the kind
+
+    @property
+    def doubtful(self) -> Kind:
+        """The kind of a finding that is not certain."""
+        return self.doubtful_kind or _DOUBTFUL.get(self.kind, self.kind)
 
     def __hash__(self) -> int:
         """Return one number for each name: the files of an example have no hash."""
@@ -184,7 +202,8 @@ class _Rules(Mapping[str, Rule]):
         """Return a rule as its entry has it."""
         row = dict(_table()["rules"][name])
         kinds = {kind.code: kind for kind in NAME_CATALOGUE}
-        row["kind"], row["doubtful"] = kinds[row["kind"]], kinds[row["doubtful"]]
+        for key in {"kind", "doubtful_kind"} & row.keys():
+            row[key] = kinds[row[key]]
         symptoms = [Symptom(**each) for each in row.get("symptoms", ())]
         row["symptoms"] = tuple(each._replace(within=tuple(each.within)) for each in symptoms)
         return Rule(name, **row)

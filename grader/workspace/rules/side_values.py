@@ -67,7 +67,6 @@ _LINK_SIDE = Rule(
     "link-side",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "Links that are called left are on the left of those called right.",
     why=(
         "Controllers and code choose links by their names. A robot with such wheels turns the "

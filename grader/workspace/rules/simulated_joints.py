@@ -26,7 +26,6 @@ _SIMULATED_JOINTS = Rule(
     "simulated-joints",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "Something publishes the positions of the joints of a robot in Gazebo.",
     why=(
         "Wheels turn in Gazebo, but robot_state_publisher gets no positions. RViz reports that "

@@ -31,7 +31,6 @@ _SIMULATED_NODE = Rule(
     "simulated-node",
     "wiring",
     OTHER_TIME,
-    OTHER_TIME,
     "The nodes that a launch file starts beside Gazebo use its time.",
     why=(
         "What the node publishes has the time of the machine. RViz, tf2 and filters beside "

@@ -18,7 +18,6 @@ from grader.workspace.rules.frames import openings
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
     NO_TOPIC,
-    SIMILAR,
     Rule,
 )
 
@@ -70,7 +69,6 @@ _BRIDGE_SYSTEM = Rule(
     "bridge-system",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "The robot has a system for the commands, joints and odometry of a bridge.",
     why=(
         "Nothing in Gazebo reads the commands or publishes the messages. The topics exist in "
@@ -120,7 +118,6 @@ _ODOMETRY_BRIDGED = Rule(
     "odometry-bridged",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A bridge takes the transform of odometry that RViz shows to /tf.",
     why=(
         "RViz reports that its fixed frame does not exist and cannot place the robot, although "

@@ -28,7 +28,6 @@ from grader.workspace.rules.names import (
 )
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -65,7 +64,6 @@ _SPAWNER_MANAGER = Rule(
     "spawner-manager",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "The controller manager that a spawner asks is started.",
     why=(
         "The spawner waits for services of the controller manager that nothing offers. It waits"
@@ -213,7 +211,6 @@ _MANAGER_PARAMETERS = Rule(
     "manager-parameters",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "The controller manager gets the types of the controllers that spawners start.",
     why=(
         "For each spawner the controller manager prints that the 'type' param was not defined, "
@@ -306,7 +303,6 @@ _MANAGER_SECTION = Rule(
     "manager-section",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "The types of controllers are below controller_manager.",
     why=(
         "The controller manager ignores a section with another name without a message. Later "
@@ -388,7 +384,6 @@ _CONTROLLER_STARTED = Rule(
     "controller-started",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A spawner starts one of the controllers that move joints, and one that publishes.",
     why=(
         "A controller without a spawner is not loaded. Its joints do not move, or without joint"

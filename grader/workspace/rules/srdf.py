@@ -113,7 +113,6 @@ _SRDF_ROBOT = Rule(
     "srdf-robot",
     "moveit",
     OTHER_MOVEIT,
-    OTHER_MOVEIT,
     "An SRDF names its robot.",
     why=(
         "MoveIt prints 'Semantic description is not specified for the same robot as the URDF' "
@@ -143,7 +142,6 @@ _SRDF_GROUP = Rule(
     "srdf-group",
     "moveit",
     OTHER_MOVEIT,
-    OTHER_MOVEIT,
     "A group of an SRDF is not empty.",
     why=(
         "MoveIt leaves out the group. A program that plans for it ends because the group was "
@@ -170,7 +168,6 @@ _STATE_LIMITS = Rule(
     "state-limits",
     "frames",
     NO_FRAME,
-    SIMILAR,
     "The states of an SRDF are within the limits of the joints.",
     why=(
         "MoveIt does not move a joint beyond its limits. A motion to the named state fails or "
@@ -214,7 +211,6 @@ def _is_beyond(value: float, limit: Limit) -> bool:
 _DISABLED_PAIRS = Rule(
     "disabled-pairs",
     "frames",
-    SIMILAR,
     SIMILAR,
     "An SRDF disables the collisions between links that a joint connects.",
     why=(

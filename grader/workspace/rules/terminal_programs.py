@@ -37,7 +37,6 @@ _PROGRAM_TERMINAL = Rule(
     "program-terminal",
     "wiring",
     MAY_WAIT,
-    MAY_WAIT,
     "A program that reads keys or lines is started in a terminal.",
     why=(
         "ros2 launch does not pass keys to a program. It waits without end, or it stops with "

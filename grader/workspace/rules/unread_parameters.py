@@ -26,7 +26,6 @@ _PARAMETER_READ = Rule(
     "parameter-read",
     "words",
     UNREAD,
-    UNREAD,
     "Code reads the parameters that it declares.",
     why=(
         "ros2 param set succeeds, and the behaviour of the node stays the same. A value in a "

@@ -42,7 +42,6 @@ _LAUNCH_ARGUMENT_USED = Rule(
     "launch-argument-used",
     "words",
     UNREAD,
-    UNREAD,
     "A launch file uses the arguments that it declares.",
     why=(
         "ros2 launch --show-args lists the argument and a value is accepted, but it changes "
@@ -118,7 +117,6 @@ def _used_arguments(sources: Iterable[Source]) -> set[str]:
 _XACRO_ARGUMENT_USED = Rule(
     "xacro-argument-used",
     "words",
-    UNREAD,
     UNREAD,
     "The files of xacro use the arguments that they declare.",
     why=(

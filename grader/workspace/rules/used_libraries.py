@@ -91,7 +91,6 @@ _LIBRARY_DECLARED = Rule(
     "library-declared",
     "keys",
     NO_DEPENDENCY,
-    BROUGHT,
     "package.xml declares the libraries of Python and C++ that the files of the package use.",
     why=(
         "rosdep does not install the library. On another machine the import raises "
@@ -110,6 +109,7 @@ def main():
 """,
     },
     at="rover/driver.py",
+    doubtful_kind=BROUGHT,
 )
 
 

@@ -135,7 +135,6 @@ _WHEEL_LIMIT = Rule(
     "wheel-limit",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "A wheel that is driven in Gazebo turns without limits.",
     why=(
         "The wheel stops when it reaches the limit of its joint. The robot drives a short "
@@ -335,7 +334,6 @@ WHEEL_SIDE = Rule(
     "wheel-side",
     "values",
     WRONG_VALUE,
-    OTHER_VALUE,
     "The left and right wheels of a controller or a Gazebo plugin are on their sides.",
     why=(
         "A command to turn left turns the robot right. The odometry reports the opposite of the"
@@ -377,7 +375,6 @@ def _other_sides(placed: _PlacedWheels) -> Iterator[Mismatch]:
 _WHEEL_AXIS = Rule(
     "wheel-axis",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "A positive speed of a wheel drives forward.",
     why=(
@@ -484,7 +481,6 @@ _WHEEL_DISTANCE = Rule(
     "wheel-distance",
     "values",
     WRONG_VALUE,
-    OTHER_VALUE,
     "The track and wheelbase of a controller or a Gazebo plugin are those of the robot.",
     why=(
         "The robot turns more or less than commanded. The angle of the odometry is wrong after "
@@ -564,7 +560,6 @@ _WHEEL_SIZE = Rule(
     "wheel-size",
     "values",
     WRONG_VALUE,
-    OTHER_VALUE,
     "The wheel radius of a controller or a Gazebo plugin is that of the robot.",
     why=(
         "The robot drives faster or slower than commanded, and the distance of the odometry is "
