@@ -1,12 +1,17 @@
 """Code: what stops own nodes, or keeps them from doing anything."""
 
-from collections.abc import Iterator
-
 from grader.ros.launch.valid_names import is_node_name, why_no_topic
 from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.package.found_problems import syntax_fixes
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, Undecided, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    Mismatches,
+    Undecided,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     MAY_WAIT,
     NO_RUN,
@@ -562,7 +567,7 @@ RCLCPP_COMPONENTS_REGISTER_NODE(rover::Drive)
 _RULES_BY_NAME = {rule.name: rule for rule in [*globals().values()] if isinstance(rule, Rule)}
 
 
-def code_facts(workspace: Workspace) -> Iterator[Fact]:
+def code_facts(workspace: Workspace) -> Facts:
     """Yield what is wrong in the code of nodes."""
     for package, nodes in workspace.code.by_package.items():
         if nodes.has_more_faults:
@@ -612,7 +617,7 @@ def __init__(self):
 )
 
 
-def _invalid_names(node: NodeFacts) -> Iterator[Mismatch]:
+def _invalid_names(node: NodeFacts) -> Mismatches:
     """Yield the names of a node, and of what it opens, that ROS 2 refuses.
 
     They are checked as they are written in the code, before a launch file gives others.

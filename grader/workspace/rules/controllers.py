@@ -31,8 +31,9 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Correction,
     Definition,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     Use,
     corrections,
 )
@@ -45,7 +46,7 @@ _LIKENESS = 0.85  # of a type to one of another package
 _MAX_KEYS = 2  # of joints; steering controllers have those of an older release as well
 
 
-def controller_facts(workspace: Workspace) -> Iterator[Fact]:
+def controller_facts(workspace: Workspace) -> Facts:
     """Yield the controllers, types, sections and interfaces in YAML files, and those of actions."""
     controllers = list(defined_controllers(workspace))
     if not controllers:
@@ -101,7 +102,7 @@ Node(package='rover', executable='motors'),  # or describe the hardware in <ros2
 )
 
 
-def _no_hardware(workspace: Workspace) -> Iterator[Mismatch]:
+def _no_hardware(workspace: Workspace) -> Mismatches:
     """Yield that a controller manager is started, while no robot has <ros2_control>.
 
     Nothing is said where a robot may have more than is read.
@@ -131,7 +132,7 @@ _CONTROLLER_TYPE = Rule(
 )
 
 
-def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismatch]:
+def _other_type(workspace: Workspace, controller: Controller) -> Mismatches:
     """Yield that no package has a class of the controller's type.
 
     It is certain where all classes of the package are known, or the same class is in a package with
@@ -217,7 +218,7 @@ arm_controller:
 
 def _no_parameters(
     workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that a controller that needs joints has no parameters.
 
     It has neither a section of its name, nor one of all nodes, nor a file of its own.
@@ -256,7 +257,7 @@ command_interfaces: [position]
 )
 
 
-def _no_list(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
+def _no_list(controller: Controller, section: YamlNode) -> Mismatches:
     """Yield the parameters of a controller that are lists of joints, and are given a string."""
     for key in controller_row(controller.type.text).joints:
         given = section.get(key) if key.endswith("s") else None
@@ -292,7 +293,7 @@ command_interfaces: [position]
 )
 
 
-def _claimed_twice(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
+def _claimed_twice(controller: Controller, section: YamlNode) -> Mismatches:
     """Yield the command interfaces that a controller claims twice.
 
     Steering controllers, which have the parameters of an older release as well, claim those of
@@ -391,9 +392,7 @@ command_interfaces: [position]
 )
 
 
-def _no_interface(
-    workspace: Workspace, controller: Controller, section: YamlNode
-) -> Iterator[Mismatch]:
+def _no_interface(workspace: Workspace, controller: Controller, section: YamlNode) -> Mismatches:
     """Yield the command interfaces that a controller needs and <ros2_control> does not have.
 
     They are those of a joint.
@@ -423,9 +422,7 @@ def _beside(workspace: Workspace, controller: Controller, section: YamlNode) -> 
     return section
 
 
-def _no_state(
-    workspace: Workspace, controller: Controller, section: YamlNode
-) -> Iterator[Mismatch]:
+def _no_state(workspace: Workspace, controller: Controller, section: YamlNode) -> Mismatches:
     """Yield the state interfaces that a controller reads and <ros2_control> does not have.
 
     Own hardware may have others than those that are listed there.
@@ -481,7 +478,7 @@ def _missing_interfaces(
     needed: Sequence[str],
     message: str,
     interfaces: tuple[frozenset[str], Location],
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield the command interfaces that <ros2_control> does not have of a joint that it has."""
     offered, at = interfaces
     there = f"<ros2_control> has {', '.join(sorted(offered)) or 'none'} ({at.file_and_line})"
@@ -492,7 +489,7 @@ def _missing_interfaces(
             yield Mismatch(_CONTROLLER_INTERFACE, text, joint.location, at, corrections=either)
 
 
-def _action_facts(workspace: Workspace) -> Iterator[Fact]:
+def _action_facts(workspace: Workspace) -> Facts:
     """Yield the controllers whose actions own nodes ask for."""
     namespaces = _namespaces(workspace)
     for _, node in workspace.launches.nodes:

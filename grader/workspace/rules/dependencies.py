@@ -1,6 +1,6 @@
 """Dependencies: whether package.xml of a package declares the packages that its files use."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from grader.base.names import near
 from grader.ros.installation.installation import FoundPackage
@@ -12,8 +12,9 @@ from grader.ros.package.package import Package
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     corrections,
     cost_of_guess,
     warning,
@@ -45,7 +46,7 @@ _FOR_BUILD = frozenset({"build_depend", "buildtool_depend"})
 _WITH_NODES = ("rclcpp", "rclcpp_action", "rclcpp_components", "rclcpp_lifecycle", "tf2_ros")
 
 
-def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
+def dependency_facts(workspace: Workspace) -> Facts:
     """Yield the packages that a package uses and does not declare."""
     for package in workspace.packages:
         if package.manifest is None or package.manifest.refusals:
@@ -101,7 +102,7 @@ _BUILD_ORDER = Rule(
 )
 
 
-def _built_before(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
+def _built_before(workspace: Workspace, package: Package) -> Mismatches:
     """Yield the packages of the workspace that CMake needs, and that colcon may build later.
 
     colcon orders packages by what package.xml declares. What a release has, too, CMake may find
@@ -161,7 +162,7 @@ DEPENDENCY_DECLARED = Rule(
 
 def _undeclared(
     workspace: Workspace, package: Package, manifest: Manifest, used: Mapping[str, PackageUse]
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield the packages that are used and that package.xml does not declare.
 
     Those that packages of the workspace bring, which are declared, rosdep installs.
@@ -219,9 +220,7 @@ _DEPENDENCY_KIND = Rule(
 )
 
 
-def _of_other_kind(
-    package: Package, manifest: Manifest, uses: Sequence[PackageUse]
-) -> Iterator[Mismatch]:
+def _of_other_kind(package: Package, manifest: Manifest, uses: Sequence[PackageUse]) -> Mismatches:
     """Yield the packages that a build needs and package.xml declares only for a run, or inversely.
 
     A C++ program needs the library of a package with nodes when it runs, too.

@@ -24,8 +24,9 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
     Correction,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     Undecided,
     corrections,
     cost_of_guess,
@@ -51,7 +52,7 @@ _URI = re.compile(r"package://([\w-]+)/([\w./-]+)")  # of a whole text
 _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 
-def file_facts(workspace: Workspace) -> Iterator[Fact]:
+def file_facts(workspace: Workspace) -> Facts:
     """Yield the paths at which a build of the workspace installs no file."""
     yield from _faults_of(workspace, named_paths(workspace))
     yield from _map_images(workspace)
@@ -61,7 +62,7 @@ def file_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _faults_of(workspace, _paths_in_cpp(workspace, package))
 
 
-def _faults_of(workspace: Workspace, every: Iterable["PathInFile"]) -> Iterator[Fact]:
+def _faults_of(workspace: Workspace, every: Iterable["PathInFile"]) -> Facts:
     """Yield the paths that are compared, and then what is wrong with them."""
     first_named: dict[tuple[str, Location], PathInFile] = {}
     for named in every:
@@ -229,7 +230,7 @@ def _texts_given(node: StartedNode, *, is_own: bool) -> Iterator[_Text]:
                 yield _Text(parameter.value, parameter.location, is_read, is_own, is_needed)
 
 
-def _fault_of(workspace: Workspace, named: PathInFile) -> Iterator[Fact]:
+def _fault_of(workspace: Workspace, named: PathInFile) -> Facts:
     """Yield that no file is installed at a path, if this is certain."""
     package, at = named.package, named.location
     name, rest = share_parts(named.path)
@@ -283,7 +284,7 @@ Node(package='usb_cam', executable='usb_cam_node_exe',
 )
 
 
-def _no_package(workspace: Workspace, named: PathInFile) -> Iterator[Mismatch]:
+def _no_package(workspace: Workspace, named: PathInFile) -> Mismatches:
     """Yield that the package of a path is a misspelt one of the workspace.
 
     Others may be installed; of a well-known one it is compared which launch files it has.
@@ -313,7 +314,7 @@ _LAUNCH_FILE_NAME = Rule(
 )
 
 
-def _misspelt_launch_file(package: str, file: str, at: Location) -> Iterator[Mismatch]:
+def _misspelt_launch_file(package: str, file: str, at: Location) -> Mismatches:
     """Yield that a well-known package has a launch file of nearly this name, and none of this."""
     ending = file.partition(".")[2]
     stems = []
@@ -399,7 +400,7 @@ def _not_there(
     )
 
 
-def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Iterator[Mismatch]:
+def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Mismatches:
     """Yield where else a build installs what is in a folder, if anywhere."""
     setup = owner.installation
     assert setup is not None
@@ -469,7 +470,7 @@ resolution: 0.05
 )
 
 
-def _map_images(workspace: Workspace) -> Iterator[Fact]:
+def _map_images(workspace: Workspace) -> Facts:
     """Yield the images of maps that are not there."""
     files = workspace.tree.files
     for path, tree in workspace.installed.trees:
@@ -507,7 +508,7 @@ _WORLD_MODEL = Rule(
 )
 
 
-def _models(workspace: Workspace) -> Iterator[Fact]:
+def _models(workspace: Workspace) -> Facts:
     """Yield models that worlds include, and whose names are similar to those of the workspace."""
     models = set()
     for package in workspace.packages:

@@ -18,7 +18,13 @@ from grader.workspace.graph.bridge_rows import BRIDGE
 from grader.workspace.graph.gazebo_topics import roots, system_of
 from grader.workspace.graph.started_worlds import started_worlds
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Fact, Mismatch, corrections, warning
+from grader.workspace.rules.names import (
+    Facts,
+    Mismatch,
+    Mismatches,
+    corrections,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
     NO_PARAMETER,
@@ -32,7 +38,7 @@ _OPTION = re.compile(r"--?[A-Za-z]")
 _WITHOUT_VALUE = "allow_renaming"  # an option of create
 
 
-def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
+def gazebo_facts(workspace: Workspace) -> Facts:
     """Yield systems that worlds lack, and what is spawned, or bridged, from what is not there."""
     worlds: dict[str, XmlFile] = {}  # those that launch files name
     for file in workspace.texts.sdf_files:
@@ -79,7 +85,7 @@ Node(package='ros_gz_sim', executable='create', arguments=['-string', robot]),
 )
 
 
-def _created_without_gazebo(workspace: Workspace) -> Iterator[Mismatch]:
+def _created_without_gazebo(workspace: Workspace) -> Mismatches:
     """Yield that a robot is created, and that no launch file starts Gazebo with its world.
 
     Nothing is said where launch files name no world of the workspace: another command may start it.
@@ -124,7 +130,7 @@ Node(package='ros_gz_sim', executable='create', arguments=['-string', robot]),
 )
 
 
-def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Iterator[Mismatch]:
+def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Mismatches:
     """Yield the systems that a world lacks for sensors in it and in the robot.
 
     The world has systems of its own.
@@ -198,7 +204,7 @@ Node(package='ros_gz_sim', executable='create', arguments=['-world', 'field', '-
 )
 
 
-def _created_in_world(node: StartedNode, worlds: Mapping[str, XmlFile]) -> Iterator[Mismatch]:
+def _created_in_world(node: StartedNode, worlds: Mapping[str, XmlFile]) -> Mismatches:
     """Yield that a robot is created in another world than the one that launch files name.
 
     The name is compared where launch files name only one world.
@@ -258,7 +264,7 @@ Node(package='ros_gz_sim', executable='create',
 )
 
 
-def _unknown_options(node: StartedNode) -> Iterator[Mismatch]:
+def _unknown_options(node: StartedNode) -> Mismatches:
     """Yield the options that the program that creates robots does not have, and ignores."""
     for name in _options_given(node) or ():
         if name in create_table().options:
@@ -286,7 +292,7 @@ Node(package='ros_gz_sim', executable='create', arguments=['-name', 'rover', '-s
 )
 
 
-def _created_from_nothing(node: StartedNode) -> Iterator[Mismatch]:
+def _created_from_nothing(node: StartedNode) -> Mismatches:
     """Yield that the program that creates robots gets no source of one. Parameters may name it."""
     given = _options_given(node)
     if given is None or node.parameters != () or set(given).intersection(create_table().sources):
@@ -318,7 +324,7 @@ Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'robot_desc
 )
 
 
-def _created_from_topic(workspace: Workspace, node: StartedNode) -> Iterator[Mismatch]:
+def _created_from_topic(workspace: Workspace, node: StartedNode) -> Mismatches:
     """Yield that no robot_state_publisher publishes the topic from which a robot is created.
 
     Nothing is said where more nodes may be started, or one of them may publish the topic.
@@ -361,7 +367,7 @@ Node(
 )
 
 
-def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
+def _bridges(workspace: Workspace) -> Mismatches:
     """Yield bridges without any topic."""
     for package, node in workspace.launches.nodes:
         is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"

@@ -439,6 +439,9 @@ class Counted(NamedTuple):
 
 
 Fact = Definition | Use | Open | Pattern | Mismatch | Compared | Undecided | Counted
+# What the readers of rules yield.
+Facts = Iterator[Fact]
+Mismatches = Iterator[Mismatch]
 
 
 class Agreement(NamedTuple):

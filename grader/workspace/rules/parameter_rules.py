@@ -24,6 +24,7 @@ from grader.ros.python.parse import START
 from grader.ros.python.values import Unknown
 from grader.workspace.rules.names import (
     Mismatch,
+    Mismatches,
     corrections,
     warning,
 )
@@ -132,7 +133,7 @@ Node(package='robot_localization', executable='ekf_node', parameters=[{'two_d_mo
 )
 
 
-def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismatch]:
+def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Mismatches:
     """Yield what is wrong with the parameters of a node in each of the stated releases.
 
     Without a stated release, it is all that the rows are of. A value that is right in one of them

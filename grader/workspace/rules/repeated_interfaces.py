@@ -1,10 +1,12 @@
 """Command interfaces of joints that several <ros2_control> of a robot have."""
 
-from collections.abc import Iterator
-
 from grader.ros.xml.parsing import Element
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
     Rule,
@@ -43,7 +45,7 @@ _INTERFACE_ONCE = Rule(
 )
 
 
-def repeated_interface_facts(workspace: Workspace) -> Iterator[Fact]:
+def repeated_interface_facts(workspace: Workspace) -> Facts:
     """Yield the joints whose commands two systems of a robot take.
 
     Newer controller managers load no such robot, older ones use the first of them.

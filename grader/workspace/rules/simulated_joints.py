@@ -1,7 +1,5 @@
 """Positions of the joints of a robot in Gazebo: whether something publishes them."""
 
-from collections.abc import Iterator
-
 from grader.base.text import quoted
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.urdf.model import Joint
@@ -12,7 +10,11 @@ from grader.workspace.graph.unread_ends import may_publish_type
 from grader.workspace.model.launches import SPAWNERS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.companions import may_publish_joint_states
-from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
     Rule,
@@ -67,7 +69,7 @@ def generate_launch_description():
 )
 
 
-def simulated_joint_facts(workspace: Workspace) -> Iterator[Fact]:
+def simulated_joint_facts(workspace: Workspace) -> Facts:
     """Yield launch files that create a robot with wheels in Gazebo without their positions.
 
     Only if all that the launch file starts is known, and each robot has such joints. Where nothing

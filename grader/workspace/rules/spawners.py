@@ -20,8 +20,9 @@ from grader.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Definition,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     Open,
     Use,
     corrections,
@@ -37,7 +38,7 @@ _OF_GAZEBO = ("gz_ros2_control/", "ign_ros2_control/", "gazebo_ros2_control/")  
 _MAX_CONTROLLERS = 3  # in a message
 
 
-def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
+def spawner_facts(workspace: Workspace) -> Facts:
     """Yield the controllers that spawners load, and what keeps controllers from being loaded."""
     misspelt = list(_misspelt_managers(workspace))
     if misspelt:
@@ -93,7 +94,7 @@ Node(
 )
 
 
-def _without_plugin(workspace: Workspace) -> Iterator[Mismatch]:
+def _without_plugin(workspace: Workspace) -> Mismatches:
     """Yield that a spawner waits for the controller manager of a simulation that starts none.
 
     <ros2_control> names the hardware of Gazebo, which its plugin in <gazebo> loads.
@@ -120,7 +121,7 @@ def _without_plugin(workspace: Workspace) -> Iterator[Mismatch]:
             )
 
 
-def _names_in_spawners(workspace: Workspace) -> Iterator[Fact]:
+def _names_in_spawners(workspace: Workspace) -> Facts:
     """Yield the controllers that spawners name, and managers that they surely misspell.
 
     Where the launch file of a spawner starts no controller manager, that of a robot's driver may
@@ -178,7 +179,7 @@ def _is_typed(words: Sequence[str | None]) -> bool:
     return any(word and word.startswith(("-t", "--controller-t")) for word in words)
 
 
-def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact]:
+def _managers_named(workspace: Workspace, spawner: StartedNode) -> Facts:
     """Yield the controller manager that a spawner waits for, if it means another one.
 
     It surely stands for another one.
@@ -234,7 +235,7 @@ Node(package='controller_manager', executable='spawner', arguments=['arm_control
 
 def _without_type(
     workspace: Workspace, package: Package, launch: Launch, controllers: Sequence[Controller]
-) -> Iterator[Fact]:
+) -> Facts:
     """Yield the controllers whose types are in files or sections that nothing reads.
 
     The controller manager reads its own section of its files, and a spawner that of its controller.
@@ -332,7 +333,7 @@ arm_controller:
 )
 
 
-def _misspelt_managers(workspace: Workspace) -> Iterator[Mismatch]:
+def _misspelt_managers(workspace: Workspace) -> Mismatches:
     """Yield the sections of types of controllers that are called nearly as the manager.
 
     They are yielded where none is called as the controller manager.
@@ -362,7 +363,7 @@ def _has_types(section: YamlNode) -> bool:
     return any("/" in (kind.text or "") for kind in types)
 
 
-def _no_controllers(workspace: Workspace) -> Iterator[Mismatch]:
+def _no_controllers(workspace: Workspace) -> Mismatches:
     """Yield the controllers that spawners start while no file has any, as an empty one."""
     if any(isinstance(tree, YamlFault) for tree in workspace.installed.yaml.values()):
         return
@@ -415,7 +416,7 @@ arm_controller:
 )
 
 
-def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Iterator[Fact]:
+def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Facts:
     """Yield the controllers that publish, or that move joints, where none is spawned."""
     spawned = started_controllers(workspace)
     if spawned is None:

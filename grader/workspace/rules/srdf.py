@@ -10,7 +10,16 @@ from grader.ros.xml.parsing import Element, XmlFile
 from grader.workspace.graph.compared_robots import ComparedRobots
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Definition, Fact, Mismatch, Open, Use, among, warning
+from grader.workspace.rules.names import (
+    Definition,
+    Facts,
+    Mismatch,
+    Mismatches,
+    Open,
+    Use,
+    among,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_FRAME,
     OTHER_MOVEIT,
@@ -29,7 +38,7 @@ _ROUNDING = 1e-6
 _COMPUTED = (".srdf.xacro", ".srdf.xml.xacro")
 
 
-def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
+def srdf_facts(workspace: Workspace) -> Facts:
     """Yield what SRDF files define and name, if a robot is known."""
     files = workspace.texts.srdf_files
     if not workspace.robots.known:
@@ -124,7 +133,7 @@ _SRDF_ROBOT = Rule(
 )
 
 
-def _other_robot(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
+def _other_robot(robot: Robot, file: XmlFile) -> Mismatches:
     """Yield that the description has another name than the only robot.
 
     MoveIt writes an error and goes on.
@@ -153,7 +162,7 @@ _SRDF_GROUP = Rule(
 )
 
 
-def _empty_groups(file: XmlFile) -> Iterator[Mismatch]:
+def _empty_groups(file: XmlFile) -> Mismatches:
     """Yield groups in which nothing is, which MoveIt leaves out."""
     for group in file.root.iterchildren("group"):
         if next(group.iterchildren("*"), None) is None:
@@ -186,7 +195,7 @@ _STATE_LIMITS = Rule(
 )
 
 
-def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
+def _states(robot: Robot, file: XmlFile) -> Mismatches:
     """Yield positions in states of groups that are beyond the limits of their joints."""
     limits = {
         joint.name: joint.limit for joint in robot.joints if joint.type in ("revolute", "prismatic")
@@ -244,7 +253,7 @@ _DISABLED_PAIRS = Rule(
 )
 
 
-def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
+def _neighbours(robot: Robot, file: XmlFile) -> Mismatches:
     """Yield links that a joint connects and whose collisions are compared.
 
     They are yielded where most such pairs are disabled. It is wrong only if their shapes touch in

@@ -8,7 +8,12 @@ from grader.base.source import Location
 from grader.ros.known.rosdep_words import rosdep_words
 from grader.ros.package.package import Package
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    Mismatches,
+)
 from grader.workspace.rules.rule_table import (
     BROUGHT,
     NO_DEPENDENCY,
@@ -30,7 +35,7 @@ class _LibraryUse(NamedTuple):
     is_built: bool
 
 
-def library_facts(workspace: Workspace) -> Iterator[Fact]:
+def library_facts(workspace: Workspace) -> Facts:
     """Yield the libraries that a package uses, and that its package.xml does not declare.
 
     These are the modules that installed Python files import without a condition, and what
@@ -113,9 +118,7 @@ def main():
 )
 
 
-def _undeclared(
-    package: Package, use: _LibraryUse, declared: Collection[str]
-) -> Iterator[Mismatch]:
+def _undeclared(package: Package, use: _LibraryUse, declared: Collection[str]) -> Mismatches:
     """Yield that package.xml does not declare a library."""
     assert package.manifest is not None
     is_brought = _is_brought(package, use.key, declared)
