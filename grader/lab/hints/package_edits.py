@@ -19,7 +19,7 @@ from grader.base.merge_conflicts import find_conflicts
 from grader.base.names import closest
 from grader.base.source import Edit, Edits, Source
 from grader.base.text import in_backticks
-from grader.lab.hints.edits import Proposal
+from grader.lab.hints.edits import Proposal, Proposals
 from grader.lab.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.ros.installation.places import HOME, PREFIX, WORKING_FOLDER
 from grader.ros.launch.launch_model import Launch, NamedFile
@@ -76,7 +76,7 @@ def package_proposals(
     package: Package,
     reference: Package | None,
     wanted: Iterable[tuple[tuple[str, ...], Mapping[str, Any]]],
-) -> Iterator[Iterator[Proposal]]:
+) -> Iterator[Proposals]:
     """Yield edits of a package for checks, by the kinds of files.
 
     The kinds are what each check looks at, with its arguments.
@@ -93,7 +93,7 @@ def package_proposals(
         yield _best_of_kind(task, kind)
 
 
-def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
+def _best_of_kind(task: PackageTask, kind: str) -> Proposals:
     """Yield the best proposals for a kind of files, each edit once.
 
     A later one says better what changes.
@@ -106,7 +106,7 @@ def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     yield from in_order[:_MAX_PROPOSALS]
 
 
-def _proposals_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
+def _proposals_of_kind(task: PackageTask, kind: str) -> Proposals:
     """Yield edits of the file of a kind, and those that rename or create one.
 
     Without a kind, of the package's name.
@@ -134,7 +134,7 @@ def _writes_address(edit: Edit) -> bool:
 
 def _proposals_of_file(
     task: PackageTask, kind: str, source: Source, path: str, like: str | None
-) -> Iterator[Proposal]:
+) -> Proposals:
     """Yield the edits of a file.
 
     They are about its difference to the reference, its syntax, its names, its paths and its
@@ -173,7 +173,7 @@ def _proposals_of_file(
         yield from _indentations(file, what)
 
 
-def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
+def _respellings(source: Source, known: Iterable[str], what: str) -> Proposals:
     """Yield edits that replace a misspelt word everywhere, rare ones first.
 
     `known` are texts with words that are spelt as they should be; the file's other words may be the
@@ -210,7 +210,7 @@ def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Pr
 
 def _replace_words(
     source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str
-) -> Iterator[Proposal]:
+) -> Proposals:
     """Yield edits that write another word everywhere for what a pattern finds."""
     places: dict[str, list[re.Match[str]]] = {}
     for match in pattern.finditer(source.text):
@@ -232,7 +232,7 @@ def _slip(word: str, known: Iterable[str]) -> str | None:
     return guess if likeness >= _LIKENESS else None
 
 
-def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Iterator[Proposal]:
+def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Proposals:
     """Yield edits that undo one difference each between a file and its proper text.
 
     Only if there are few.
@@ -281,7 +281,7 @@ def _missing_in_words(file: PythonFile, offset: int, new: str) -> str:
     return f"a missing part of `{around}`" if around else "a missing line"
 
 
-def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+def _other_values(source: Source, wanted: str, what: str) -> Proposals:
     """Yield edits that give a key or an attribute a value of the reference.
 
     A key of YAML, or an attribute of XML.
@@ -311,7 +311,7 @@ def _key_around(source: Source, offset: int) -> str:
     return ""
 
 
-def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _undefined_names(file: PythonFile, what: str) -> Proposals:
     """Yield edits that import or correct names, and missing commas.
 
     The names are undefined, or not as they are used.
@@ -332,7 +332,7 @@ def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
             yield change([file.source.edit(end, end, ",")], "a missing comma", what)
 
 
-def _meant_names(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _meant_names(file: PythonFile, what: str) -> Proposals:
     """Yield edits that write the most similar names that have values for undefined ones."""
     names = [node for node in file.nodes if isinstance(node, ast.Name)]
     undefined = file.undefined - {*USUAL_NAMES}
@@ -347,7 +347,7 @@ def _meant_names(file: PythonFile, what: str) -> Iterator[Proposal]:
             yield change(edits, f"the spelling of `{word}`", what)
 
 
-def _other_imports(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _other_imports(file: PythonFile, what: str) -> Proposals:
     """Yield edits that import the function glob instead of the module, or the reverse."""
     for statement in file.imports:
         if [alias.name for alias in statement.names] == ["glob"]:
@@ -358,7 +358,7 @@ def _other_imports(file: PythonFile, what: str) -> Iterator[Proposal]:
             yield proposal._replace(rank=-1)
 
 
-def _unquoted_names(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _unquoted_names(file: PythonFile, what: str) -> Proposals:
     """Yield edits that write a name without the quotes around it."""
     constants = [node for node in file.nodes if isinstance(node, ast.Constant)]
     names = [node for node in constants if node.value in file.values]
@@ -367,7 +367,7 @@ def _unquoted_names(file: PythonFile, what: str) -> Iterator[Proposal]:
         yield change([file.replaced(node, str(node.value))], cause, what)
 
 
-def _missing_calls(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _missing_calls(file: PythonFile, what: str) -> Proposals:
     """Yield edits that call a method which is only named, such as infp.read."""
     inside: set[ast.expr] = set()  # of a call or of another attribute
     for node in file.nodes:
@@ -390,7 +390,7 @@ def _find_blank_line(lines: Sequence[str], first: int) -> int:
     return at
 
 
-def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _indentations(file: PythonFile, what: str) -> Proposals:
     """Yield edits that indent lines as those around them, with which Python can read the file.
 
     These are the line at which Python stops and the one before it, each alone, and with those that
@@ -430,7 +430,7 @@ def _indent_of(line: str) -> str:
     return line[: len(line) - len(line.lstrip())]
 
 
-def _programs(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
+def _programs(task: PackageTask, launch: Launch, source: Source) -> Proposals:
     """Yield edits that start another program of a package.
 
     The program that a check names takes the place of another one, or the reverse.
@@ -459,7 +459,7 @@ def _programs(task: PackageTask, launch: Launch, source: Source) -> Iterator[Pro
                 yield change([edit], cause, _LAUNCH)._replace(rank=rank)
 
 
-def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
+def _setup_paths(task: PackageTask) -> Proposals:
     """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
     source, setup = task.source(SETUP), task.package.installation
     if source is None or setup is None or setup.is_cmake:
@@ -491,7 +491,7 @@ def _similar(path: str, known: Iterable[str]) -> list[str]:
     )
 
 
-def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
+def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Proposals:
     """Yield edits with which a launch file finds its files.
 
     First of all together, then of one path each.
@@ -628,7 +628,7 @@ def _without(source: Source, start: int, end: int) -> Edit:
     return source.edit(start, end, "")
 
 
-def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
+def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Proposals:
     """Yield edits that add missing entries: one, or all.
 
     These are what the file makes and does not use, or entries of the reference's list.
@@ -653,7 +653,7 @@ def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Iterator[
             yield from _adding(file, codes_to_add, what)
 
 
-def _adding(file: PythonFile, codes: Sequence[str], what: str) -> Iterator[Proposal]:
+def _adding(file: PythonFile, codes: Sequence[str], what: str) -> Proposals:
     edit = _add(file, codes)
     if edit is not None:
         names: set[str] = set()

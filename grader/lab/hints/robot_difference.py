@@ -17,7 +17,7 @@ from grader.lab.hints.robot_draft import Draft, Set, child_of, end_of
 from grader.lab.hints.robot_numbers import mistake_in, values_of
 from grader.lab.hints.tree_difference import Node, Step, paired, steps
 from grader.ros.xml.parsing import Element
-from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN, TAGS
+from grader.ros.xml.urdf_format import CHILDREN, TAGS
 
 _ENDS = ("parent", "child")
 _MOVING = ("revolute", "continuous", "prismatic", "planar")  # the types of joints whose axis counts
@@ -50,6 +50,9 @@ class Piece(NamedTuple):
         """Whether it changes where something is, and not what it is held by."""
         tags = {tag for one in self.sets for tag in (one.tag, str(one.owner.tag))}
         return not tags.isdisjoint(("origin", "axis")) and tags.isdisjoint(_ENDS)
+
+
+Pieces = Iterator[Piece]
 
 
 class MissingPart(NamedTuple):
@@ -128,7 +131,7 @@ class RobotDifference:
         first = sets[0]
         return self.piece(first.owner, _cause(sets), sets=tuple(sets), rank=rank, tag=first.tag)
 
-    def each(self, sets: Sequence[Set]) -> Iterator[Piece]:
+    def each(self, sets: Sequence[Set]) -> Pieces:
         """Yield the pieces that set each value alone, and all together."""
         yield from (self.piece_of_sets([one]) for one in sets)
         if len(sets) > 1:
@@ -145,20 +148,18 @@ class RobotDifference:
         edits = (*self.draft.remove(element), *self.draft.insert(parent, text))
         return self.piece(element, cause, edits)._replace(around=parent)
 
-    def _misspelt_attributes(self) -> Iterator[Piece]:
+    def _misspelt_attributes(self) -> Pieces:
         """Give attributes that ROS 2 ignores the missing names that they are like."""
-        for element in self.draft.root.iter(*ATTRIBUTES):
-            known = ATTRIBUTES[str(element.tag)]
-            given = list(map(str, element.keys()))
+        for element in self.draft.root.iter(*TAGS):
+            known, given = TAGS[str(element.tag)].attributes.keys(), list(map(str, element.keys()))
             for name in given:
-                meant = closest(name, known.difference(given)) if name not in known else None
+                meant = closest(name, sorted(known - {*given})) if name not in known else None
                 if meant is not None:
                     edits = self.draft.rename_attribute(element, name, meant)
-                    yield self.piece(
-                        element, f"the name of the attribute {meant} of {{}}", edits, rank=SIBLING
-                    )
+                    cause = f"the name of the attribute {meant} of {{}}"
+                    yield self.piece(element, cause, edits, rank=SIBLING)
 
-    def _materials(self) -> Iterator[Piece]:
+    def _materials(self) -> Pieces:
         """Name a material as links use it, or give a link the reference's colour.
 
         The latter for what a link shows if no material has the colour.
@@ -181,7 +182,7 @@ class RobotDifference:
         for used in self.draft.root.iter("material"):
             yield from self._material(used, own_materials)
 
-    def _material(self, used: Element, own_names: Collection[str]) -> Iterator[Piece]:
+    def _material(self, used: Element, own_names: Collection[str]) -> Pieces:
         link = self.reference.link(self.draft.link_of(used))
         shown = next(link.iter("material"), None) if link is not None else None
         if shown is None:
@@ -199,7 +200,7 @@ class RobotDifference:
             replaced = self.draft.replace(used, self.reference.text(like))
             yield self.piece(used, "the material of {}", replaced)
 
-    def _joint_names(self) -> Iterator[Piece]:
+    def _joint_names(self) -> Pieces:
         """Rename joints as in the reference, also where they are mimicked."""
         every: list[Set] = []
         for new, old in self._names["joint"].items():
@@ -228,7 +229,7 @@ class RobotDifference:
             values["version"] = version
         return Node("robot", (), values, nodes, draft.root)
 
-    def _pieces(self, steps_of_one: Sequence[Step]) -> Iterator[Piece]:
+    def _pieces(self, steps_of_one: Sequence[Step]) -> Pieces:
         for values in _values_of_one(steps_of_one):
             yield from self._value_pieces(values)
         for step in steps_of_one:
@@ -251,7 +252,7 @@ class RobotDifference:
                 case "remove":
                     yield from self._remove(own_node)
 
-    def _value_pieces(self, steps_of_one: Sequence[Step]) -> Iterator[Piece]:
+    def _value_pieces(self, steps_of_one: Sequence[Step]) -> Pieces:
         """Yield the values of one element: each alone, and all together."""
         element: Element = steps_of_one[0].own_node.of
         wanted = {step.name: _wanted_value(step) for step in steps_of_one}
@@ -274,7 +275,7 @@ class RobotDifference:
             return False
         return self.draft.joint_of(name) is None
 
-    def _rename(self, element: Element, name: str) -> Iterator[Piece]:
+    def _rename(self, element: Element, name: str) -> Pieces:
         """Rename an element.
 
         A link with all that names it, or alone; a joint; a material where it is used or
@@ -292,7 +293,7 @@ class RobotDifference:
                 cause = f"the name {quoted(old)} of a {tag}" if old else f"the name of a {tag}"
                 yield self.piece(element, cause, sets=sets, link=link)
 
-    def _remove(self, node: Node) -> Iterator[Piece]:
+    def _remove(self, node: Node) -> Pieces:
         """Remove what the reference does not have; an origin or axis gets its default."""
         element, tag = node.of, node.tag
         around = element.getparent()
@@ -316,7 +317,7 @@ class RobotDifference:
             key for child in self.draft.root.iterchildren("*") for key in _identities(child)
         )
 
-    def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
+    def _inner(self, parent: Element, element: Element) -> Pieces:
         """Add an element to another one.
 
         These are values of an origin or axis, another shape, or the element as it is.

@@ -70,7 +70,7 @@ MAY_WAIT = _warning("REF016", "Node that may stop or wait")
 WRONG_VALUE = _error("REF017", "Number that contradicts the robot")
 OTHER_VALUE = _warning("REF018", "Number that is not that of the robot")
 WRONG_TRANSFORM = _error("REF019", "Frames that are no tree")
-OTHER_TRANSFORM = _warning("REF020", "Transform that two programs publish")
+_OTHER_TRANSFORM = _warning("REF020", "Transform that two programs publish")
 NO_COMPANION = _warning("REF021", "Node that does not fit the others")
 ONE_MACHINE = _warning("REF022", "What only one machine has")
 OTHER_MOVEIT = _warning("REF023", "Description for MoveIt that does not fit the robot")
@@ -82,9 +82,9 @@ NO_EFFECT = _warning("REF028", "Parameter that has no effect")
 UNCONNECTED = _warning("REF029", "Transform between frames that nothing connects")
 BUILT_LATER = _error("REF030", "Package that a build does not find")
 NO_PACKAGE = _error("REF031", "Package that does not exist")
-NOWHERE = _warning("REF032", "Package that neither the workspace nor a release has")
+_NOWHERE = _warning("REF032", "Package that neither the workspace nor a release has")
 NO_KEY = _warning("REF033", "Name that rosdep does not know")
-UNKNOWN_KEY = Kind("REF034", "Name that may be no key of rosdep", severity="note", effect="other")
+_UNKNOWN_KEY = Kind("REF034", "Name that may be no key of rosdep", severity="note", effect="other")
 NOT_COMPILED = _error("REF035", "C++ file that does not compile")
 BROUGHT = Kind("REF036", "Library that other packages install", severity="note", effect="other")
 NOT_BUILT = Kind("REF037", "Package that colcon does not find", severity="note", effect="other")
@@ -105,9 +105,9 @@ _DOUBTFUL: Mapping[Kind, Kind] = {
     **dict.fromkeys(_OF_NAMES, SIMILAR),
     NO_RUN: MAY_WAIT,
     WRONG_VALUE: OTHER_VALUE,
-    WRONG_TRANSFORM: OTHER_TRANSFORM,
-    NO_KEY: UNKNOWN_KEY,
-    NO_PACKAGE: NOWHERE,
+    WRONG_TRANSFORM: _OTHER_TRANSFORM,
+    NO_KEY: _UNKNOWN_KEY,
+    NO_PACKAGE: _NOWHERE,
 }
 
 
