@@ -3,6 +3,7 @@
 The readers of the languages make these facts; names and parameters are compared by them.
 """
 
+from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
 from grader.base.problems import NO_FIXES, Fixes
@@ -180,6 +181,9 @@ class CodeFault(NamedTuple):
     related: Location | None = None
     is_certain: bool = True
     fixes: Fixes = NO_FIXES
+
+
+CodeFaults = Iterator[CodeFault]
 
 
 class NodeFacts(NamedTuple):

@@ -51,6 +51,7 @@ from grader.ros.nodes.cpp.rclcpp_calls import (
 )
 from grader.ros.nodes.node_facts import (
     CodeFault,
+    CodeFaults,
     Doubt,
     Endpoint,
     FieldUse,
@@ -697,7 +698,7 @@ class _Target:
                 Doubt("its program gives it a namespace", given[1].location)
             )
 
-    def faults(self) -> Iterator[CodeFault]:
+    def faults(self) -> CodeFaults:
         """Yield what keeps the nodes of the target from doing anything."""
         created = [
             started.node if started.node in self._facts else started.class_name
@@ -715,7 +716,7 @@ class _Target:
         """Whether functions of the target make nodes."""
         return bool(self._created)
 
-    def unregistered(self, package: Package) -> Iterator[CodeFault]:
+    def unregistered(self, package: Package) -> CodeFaults:
         """Yield the components that CMakeLists.txt registers and no source does."""
         target, setup = self._compiled.target, package.installation
         is_read = target.is_certain and not self._compiled.unread

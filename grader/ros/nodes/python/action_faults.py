@@ -1,12 +1,15 @@
 """What nodes in Python do wrong with actions and with the transforms that they look up."""
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from grader.base.source import Location
 from grader.ros.nodes.message_uses import CodePart
-from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    CodeFaults,
+)
 from grader.ros.python.constants import dotted
 from grader.ros.python.parse import AnyFunction, Code, every_node
 from grader.ros.python.walking import walk
@@ -27,7 +30,7 @@ class RegisteredGoal(NamedTuple):
     call: ast.Call
 
 
-def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Iterator[CodeFault]:
+def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> CodeFaults:
     """Yield functions that end without setting the state of their goal: rclpy aborts it then.
 
     One that gives the goal to something else, or keeps it, may set it there. A function that only
@@ -54,7 +57,7 @@ def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Ite
         yield CodeFault("goal-state", message, at, place, is_certain=False)
 
 
-def rejected_goals(code: Code, registered: Sequence[RegisteredGoal]) -> Iterator[CodeFault]:
+def rejected_goals(code: Code, registered: Sequence[RegisteredGoal]) -> CodeFaults:
     """Yield functions that answer each goal without GoalResponse.ACCEPT: rclpy rejects all goals.
 
     One that raises an error, or answers with what is computed, may accept goals elsewhere.
@@ -187,7 +190,7 @@ def loops_without_transforms(
     code: Code,
     registered: Sequence[RegisteredGoal],
     methods: Mapping[tuple[Location | None, str], AnyFunction],
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield loops of goals that look up transforms, which one thread does not read meanwhile."""
     own_methods = {name: function for (_, name), function in methods.items()}
     for goal in registered:
@@ -225,7 +228,7 @@ def answers_for_results(
     code: Code,
     parts: Sequence[CodePart],
     methods: Mapping[tuple[Location | None, str], AnyFunction],
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield fields of a result that are read of the answer, which has it as its field `result`."""
     callbacks: dict[tuple[Location | None, str], set[bool]] = {}
     for part in parts:
@@ -260,7 +263,7 @@ def _asks_for_result(node: ast.expr) -> bool:
     return False
 
 
-def _wrong_fields(code: Code, function: AnyFunction) -> Iterator[CodeFault]:
+def _wrong_fields(code: Code, function: AnyFunction) -> CodeFaults:
     """Yield the fields that the callback of a result reads of `future.result()`."""
     names = [parameter.arg for parameter in function.args.args if parameter.arg != "self"]
     if len(names) != 1:
@@ -290,7 +293,7 @@ def _is_answer(node: ast.expr, answers: set[str]) -> bool:
     return isinstance(node, ast.Call) and not node.args and dotted(node.func) in answers
 
 
-def buffers_without_listener(code: Code, names: Mapping[str, str]) -> Iterator[CodeFault]:
+def buffers_without_listener(code: Code, names: Mapping[str, str]) -> CodeFaults:
     """Yield the buffers that look up transforms, and that nothing fills.
 
     `names` has the full names of what is imported. A buffer that anything is given may be filled.

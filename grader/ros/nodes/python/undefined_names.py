@@ -1,7 +1,7 @@
 """What Python code uses and nothing defines: names, messages of a module, fields of messages."""
 
 import ast
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 from grader.base.names import near
 from grader.base.problems import NO_FIXES, Fixes
@@ -11,7 +11,11 @@ from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.package_tables import INTERFACE_KINDS, interface_table, python_table
 from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import Release
-from grader.ros.nodes.node_facts import CodeFault, FieldUse
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    CodeFaults,
+    FieldUse,
+)
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.used_fields import resolve_field
 from grader.ros.python.bindings import names_bound
@@ -42,7 +46,7 @@ _MESSAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "builtin_in
 _OF_OTHERS = ("Image", "Path")
 
 
-def undefined_names(code: Code) -> Iterator[CodeFault]:
+def undefined_names(code: Code) -> CodeFaults:
     """Yield the names that are not defined, wherever they are used.
 
     Also texts that are formatted with too little.
@@ -113,7 +117,7 @@ def _unevaluated(tree: ast.Module) -> set[Position]:
     return places
 
 
-def wrong_imports(code: Code, own_modules: Collection[str]) -> Iterator[CodeFault]:
+def wrong_imports(code: Code, own_modules: Collection[str]) -> CodeFaults:
     """Yield the first import of a well-known message or module that certainly fails.
 
     Only statements of the module itself count: others may be prepared for a failure. `own_modules`
@@ -155,7 +159,7 @@ def _why_wrong(module: str, names: Sequence[str]) -> tuple[str, str]:
 
 def wrong_fields(
     source: Source, uses: Iterable[FieldUse], releases: Collection[Release]
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield the fields that well-known types do not have, where it is sure what is meant."""
 
     def find(package: str, name: str) -> Interface | None:
@@ -173,7 +177,7 @@ def wrong_fields(
             yield CodeFault("interface-field", message, use.location, fixes=fixes)
 
 
-def wrong_objects(source: Source, uses: Iterable[FieldUse]) -> Iterator[CodeFault]:
+def wrong_objects(source: Source, uses: Iterable[FieldUse]) -> CodeFaults:
     """Yield the objects of rclpy that code uses in place of their values."""
     for use in uses:
         if use.instead is None:
