@@ -158,7 +158,9 @@ def _add_components(
         if node is not None and node.is_state_publisher:
             node = node._replace(frame_prefix=read_frame_prefix(item, context))
             if is_loaded is not False:
-                find_description(findings, _with_container_parameters(item, call), context)
+                # The process of its container may have a file of parameters for it.
+                given = {"ros_arguments": (), **item.kwargs}
+                find_description(findings, Call(item.name, [], given, item.at), context)
         findings.components.append(
             LoadedComponent(
                 package,
@@ -171,18 +173,6 @@ def _add_components(
                 node=node,
             )
         )
-
-
-def _with_container_parameters(component: Call, action: Call) -> Call:
-    """Return a component with what its container may give it besides, whose values are not known.
-
-    A component reads the parameter files of the process of its container.
-    """
-    given = ("parameters", "arguments", "ros_arguments")
-    if action.short == "ComposableNodeContainer" and not any(map(action.kwargs.get, given)):
-        return component
-    kwargs = {**component.kwargs, "ros_arguments": ()}
-    return Call(component.name, component.args, kwargs, component.at)
 
 
 def _as_node(

@@ -410,7 +410,11 @@ class _PythonLaunchFile:
 
             known = {**moveit_exports(), **known}
             self.moveit = MoveItConfigurations(lambda: self.context, self.reads).functions()
-        packages_last = sorted(known.items(), key=lambda export: -export[0].count("."))
+        # Users import a name from a package, not from a module that happens to import it as well.
+        packages = {module.rpartition(".")[0] for module in known}
+        packages_last = sorted(
+            known.items(), key=lambda export: (-export[0].count("."), export[0] in packages)
+        )
         self.interpreter = Interpreter(
             self._functions(),
             names,

@@ -7,7 +7,7 @@ None of the functions reads a file.
 
 import ast
 import posixpath
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from enum import Enum
 from functools import cache, lru_cache
 from itertools import chain
@@ -137,20 +137,14 @@ def import_error(
         if name in exports[module] or name == "*":
             return None
         homes = [home for home, names in exports.items() if name in names]
-        # The package whose users import it, not a module that happens to import it as well.
-        home = max(homes, key=lambda home: _count_modules(home, exports), default="")
         return f"{module} has no {name!r}" + (
-            f": import it from {home}" if home else did_you_mean(name, exports[module])
+            f": import it from {homes[-1]}" if homes else did_you_mean(name, exports[module])
         )
     full = module or name
     meant = find_meant_module(full, {*exports, *python_table().modules})
     if meant is not None:
         return f"there is no module {full!r}" + (f"; did you mean {meant!r}?" if meant else "")
     return _import_error(module, name, releases)
-
-
-def _count_modules(package: str, modules: Iterable[str]) -> int:
-    return sum(module.startswith(f"{package}.") for module in modules)
 
 
 def find_meant_module(module: str, known: Collection[str]) -> str | None:

@@ -124,14 +124,13 @@ def wrong_imports(code: Code, own_modules: Collection[str]) -> CodeFaults:
     are those of its package.
     """
     for statement in code.tree.body:
-        modules: list[str] = []
+        imports: list[tuple[str, list[str]]] = []
         match statement:
             case ast.Import(names=names):
-                modules = [alias.name for alias in names]
+                imports = [(alias.name, []) for alias in names]
             case ast.ImportFrom(module=str(module), names=names, level=0):
-                modules = [module]
-        for module in modules:
-            imported = [] if isinstance(statement, ast.Import) else [each.name for each in names]
+                imports = [(module, [alias.name for alias in names])]
+        for module, imported in imports:
             message, meant = _why_wrong(module, imported)
             if message and module.partition(".")[0] not in own_modules:
                 fixes = CodeEdits(code.source).rewrite_in(statement, module, meant)
