@@ -10,7 +10,10 @@ from itertools import chain
 
 from grader.ros.cpp.declarations import CppFunction, declared_in, plain
 from grader.ros.cpp.objects import class_written
-from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.syntax import (
+    CppNode,
+    CppNodes,
+)
 from grader.ros.cpp.unit import (
     CppUnit,
     arguments_of,
@@ -112,7 +115,7 @@ class _CppSearch:
             if is_own or "rate" in written.lower():
                 yield call
 
-    def _uses(self, name: str, function: CppFunction) -> list[CppNode]:
+    def _uses(self, name: str, function: CppFunction) -> CppNodes:
         """Return where a name is written in a function."""
         node = function.node
         uses = [use for use in self._unit.uses.get(name, ()) if use.file is node.file]
@@ -451,9 +454,9 @@ def _is_callback_argument(node: CppNode) -> bool:
     return called_name(call).rpartition("::")[2] in _GIVEN_CALLBACKS
 
 
-def _assigned_rotations(function: CppFunction) -> dict[str, dict[str, list[CppNode]]]:
+def _assigned_rotations(function: CppFunction) -> dict[str, dict[str, CppNodes]]:
     """Return what a function assigns to the numbers of rotations, by paths and numbers."""
-    rotations: dict[str, dict[str, list[CppNode]]] = {}
+    rotations: dict[str, dict[str, CppNodes]] = {}
     for node in function.node.walk():
         if node.kind != "assignment_expression":
             continue

@@ -23,7 +23,10 @@ from grader.ros.cpp.declarations import (
     plain,
 )
 from grader.ros.cpp.objects import class_written, self_of, taker_of, variable_of
-from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.syntax import (
+    CppNode,
+    CppNodes,
+)
 from grader.ros.cpp.unit import (
     arguments_of,
     called_name,
@@ -169,7 +172,7 @@ class _Target:
         # What is given a node, and the calls of methods of what holds one.
         self._flows: dict[NodeKey, dict[NodeKey, None]] = {}
         self._pending: list[Holder] = []
-        self._loose_calls: dict[Holder, list[CppNode]] = {}
+        self._loose_calls: dict[Holder, CppNodes] = {}
         known = {*self._node_classes, *cpp_table().nodes}
         self._holders = NodeHolders(self._unit, frozenset(known), self._key_made, budget)
         for created in self._created:
@@ -288,7 +291,7 @@ class _Target:
         is_own = not is_other or self._is_own_function(call, called_name(call), function)
         return None if is_own else Holder("own", name, "")
 
-    def _uses_in(self, function: CppFunction, name: str) -> list[CppNode]:
+    def _uses_in(self, function: CppFunction, name: str) -> CppNodes:
         """Return where a function has a name."""
         inside = function.node
         uses = [use for use in self._unit.uses.get(name, ()) if use.file is inside.file]
