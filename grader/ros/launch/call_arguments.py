@@ -172,7 +172,7 @@ def join_path(evaluation: Evaluation, call: Call) -> Value:
     assert cls is not None
     before = listed(owner.kwargs["substitutions"]) if owner.name == JOINED_PATH else [owner]
     parts = [*before, *call.args]
-    return _record_constructor(cls, evaluation, Call("", [parts], {}, call.at, owner))
+    return _record_constructor(cls, evaluation, Call("", [parts], {}, call.at))
 
 
 def texts_from_paths(cls: LaunchClass, call: Call) -> list[str]:

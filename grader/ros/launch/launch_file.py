@@ -99,7 +99,7 @@ _MOVEIT = "moveit_configs_utils"
 _NAVIGATION = "nav2_common.launch"
 _OF_NAVIGATION = ("RewrittenYaml", "ReplaceString", "HasNodeParams")
 _CONFIGURATION = "launch.substitutions.launch_configuration.LaunchConfiguration"
-# The first release whose updates take a path as a substitution, and join one by /: launch 1.0.14.
+# The first release whose updates take a path as a substitution: launch 1.0.14.
 _PATHS_SINCE = "humble"
 _MAX_INCLUDES = 40
 # What a launch file shares with those that it includes.
@@ -311,9 +311,6 @@ def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
             continue
         if cls.since:
             findings.add_later(f"there is no class {cls.short!r} of launch", cls.since, call.at)
-        if call.owner is not None and cls.name == JOINED_PATH:
-            hint = ": write PathJoinSubstitution([...])"
-            findings.add_later("no substitution has the operator /", _PATHS_SINCE, call.at, hint)
         for name in texts_from_paths(cls, call):
             what, at = f"{name} of {cls.short} takes no path", call.places.get(name, call.at)
             findings.add_later(what, _PATHS_SINCE, at, ": write str(...) around it")

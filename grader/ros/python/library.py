@@ -141,7 +141,8 @@ def import_error(
             f": import it from {homes[-1]}" if homes else did_you_mean(name, exports[module])
         )
     full = module or name
-    meant = find_meant_module(full, {*exports, *python_table().modules})
+    of_launch = {name for name in exports if name.startswith("launch")}
+    meant = find_meant_module(full, of_launch | python_table().modules)
     if meant is not None:
         return f"there is no module {full!r}" + (f"; did you mean {meant!r}?" if meant else "")
     return _import_error(module, name, releases)
