@@ -127,9 +127,8 @@ def _proposals_of_kind(task: PackageTask, kind: str) -> Proposals:
 
 def _writes_address(edit: Edit) -> bool:
     """Return whether an edit writes an e-mail address of others: those of the reference's file."""
-    if "@" not in edit.new or edit.new in edit.old:
-        return False
-    return not {*_WORD.findall(edit.old)}.issuperset(_WORD.findall(edit.new))
+    words = {*_WORD.findall(edit.old)}
+    return "@" in edit.new and not words.issuperset(_WORD.findall(edit.new))
 
 
 def _proposals_of_file(
@@ -170,6 +169,8 @@ def _proposals_of_file(
     if is_python:  # these rarely find a mistake
         yield from _unquoted_names(file, what)
         yield from _missing_calls(file, what)
+        yield from _missing_brackets(file, what)
+        yield from _missing_slashes(file, what)
         yield from _indentations(file, what)
 
 
@@ -380,6 +381,29 @@ def _missing_calls(file: PythonFile, what: str) -> Proposals:
     for method in outside[:_MAX_WORDS]:
         edit = file.replaced(method, f"{file.segment(method)}()")
         yield change([edit], f"`{method.attr}` without ()", what)
+
+
+def _missing_brackets(file: PythonFile, what: str) -> Proposals:
+    """Yield edits that put brackets around actions, or around the file of an entry."""
+    groups = [call.args for call in file.calls(_DESCRIPTION) if len(call.args) > 1]
+    for item in _items(file):
+        if isinstance(item, ast.Tuple) and len(item.elts) > 1:
+            groups.append(item.elts[1:])
+    for group in groups[:_MAX_WORDS]:
+        start, end = file.span(group[0])[0], file.span(group[-1])[1]
+        edits = [file.source.edit(start, start, "["), file.source.edit(end, end, "]")]
+        if len(group) == 1:
+            edits = [file.source.edit(start, end, f"[{file.text[start:end]}]")]
+        yield change(edits, "missing brackets", what)
+
+
+def _missing_slashes(file: PythonFile, what: str) -> Proposals:
+    """Yield edits that separate a folder from the name that it is added to."""
+    for node in file.nodes:
+        match node:
+            case ast.BinOp(op=ast.Add(), right=ast.Constant(value=str(folder)) as right):
+                edit = file.replaced(right, repr(f"/{folder}"))
+                yield change([edit], f"`{folder}` without /", what)
 
 
 def _find_blank_line(lines: Sequence[str], first: int) -> int:
