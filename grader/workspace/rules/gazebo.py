@@ -47,6 +47,7 @@ def gazebo_facts(workspace: Workspace) -> Facts:
             for world in file.root.iterchildren("world"):
                 worlds[world.get("name", "")] = file
                 yield from _missing_systems(workspace, file, world)
+    yield from _refused_sensors(workspace)
     for _, node in workspace.launches.nodes:
         if _is_creator(node):
             yield from _created_from_topic(workspace, node)
@@ -99,6 +100,34 @@ def _created_without_gazebo(workspace: Workspace) -> Mismatches:
 def _is_creator(node: StartedNode) -> bool:
     """Return whether a node creates a robot in the simulation."""
     return node.package == _SIMULATION and node.executable == "create"
+
+
+_SENSOR_NAME = Rule(
+    "sensor-name",
+    "topics",
+    NO_TOPIC,
+    "A sensor of Gazebo has a name, which no other one of its link has.",
+    why="libsdformat refuses the description, so that Gazebo creates nothing of the robot.",
+    wrong='<gazebo reference="base_link"><sensor type="imu"><topic>imu</topic></sensor></gazebo>',
+    right="""
+<gazebo reference="base_link"><sensor name="imu" type="imu"><topic>imu</topic></sensor></gazebo>
+""",
+    frame="rover.urdf",
+)
+
+
+def _refused_sensors(workspace: Workspace) -> Mismatches:
+    """Yield sensors without a name, or with the name of another one of their link."""
+    for robot in workspace.robots.known:
+        seen = set[tuple[str, str]]()
+        for sensor in robot.root.iterfind("gazebo/sensor"):
+            above = sensor.getparent()
+            name, link = sensor.get("name", ""), "" if above is None else above.get("reference", "")
+            if not name or (link, name) in seen:
+                has = f"the name {quoted(name)} of another one" if name else "no name"
+                message = f"a sensor has {has}, so Gazebo refuses the robot"
+                yield Mismatch(_SENSOR_NAME, message, robot.place(sensor))
+            seen.add((link, name))
 
 
 _SENSOR_SYSTEM = Rule(
