@@ -133,7 +133,7 @@ class Inspection:
         for robot in self.robots:
             if robot.reading.source.path == path:
                 return robot.reading.source
-        return self.source_of(path) if self.source_of is not None else None
+        return self.find_source(path) if self.find_source is not None else None
 
 
 def main_root(robot: Configuration) -> str | None:
@@ -200,7 +200,7 @@ def problem_counts(inspection: Inspection) -> str:
     return "the names agree"
 
 
-def look_of(inspection: Inspection) -> str:
+def choose_look(inspection: Inspection) -> str:
     """Return the verdict whose look the whole has.
 
     This is that of the only robot, else the worst of all.

@@ -71,7 +71,7 @@ def reference_failures(rubric: Rubric) -> _Failures:
     assert rubric.solution is not None
     unearned = grade(rubric, rubric.solution.submission).unearned
     failures = [
-        (_path_of(result.criterion), result.criterion.id, result.outcome) for result in unearned
+        (_make_path(result.criterion), result.criterion.id, result.outcome) for result in unearned
     ]
     failures += _carried_failures(rubric)
     failures.sort(key=lambda failure: failure[0][1])
@@ -91,10 +91,10 @@ def reference_failures(rubric: Rubric) -> _Failures:
 
 
 def _lines(rubric: Rubric, notes: Iterable[tuple[TomlPath, str]]) -> tuple[str, ...]:
-    return tuple(one_line_each(rubric.path, [(rubric.line_of(path), what) for path, what in notes]))
+    return tuple(one_line_each(rubric.path, [(rubric.find_line(path), what) for path, what in notes]))
 
 
-def _path_of(criterion: Criterion) -> TomlPath:
+def _make_path(criterion: Criterion) -> TomlPath:
     return ("criterion", criterion.position, "with")
 
 
@@ -153,7 +153,7 @@ def _unresolved_selectors(rubric: Rubric) -> Iterator[tuple[TomlPath, str]]:
                     f"{criterion.id} names a link by its place in the tree, and the reference "
                     "has no such link"
                 )
-                yield _path_of(criterion), f"{what}: {error}"
+                yield _make_path(criterion), f"{what}: {error}"
 
 
 def likely_mistakes(rubric: Rubric) -> Sequence[str]:

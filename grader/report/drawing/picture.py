@@ -107,7 +107,7 @@ class Scene:
         `frame` itself if it is on or below a loop of joints.
         """
         with suppress(MissingElement):
-            return self.robot.root_of(self.frame)
+            return self.robot.find_root(self.frame)
         return self.frame
 
     @property
@@ -116,7 +116,7 @@ class Scene:
         return self.poses.get(self.root)
 
 
-def scene_of(
+def make_scene(
     robot: Configuration,
     frame: str,
     wheels: Collection[str] = (),
@@ -300,5 +300,5 @@ def plain_picture(
     None without either. `wheels` are the links that drive it, if they are known.
     """
     if robot is not None and frame is not None:
-        return Picture(scene_of(robot, frame, meshes=meshes), (), (), (), {"wheels": wheels})
+        return Picture(make_scene(robot, frame, meshes=meshes), (), (), (), {"wheels": wheels})
     return None

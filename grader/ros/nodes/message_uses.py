@@ -15,14 +15,14 @@ from typing import NamedTuple
 from grader.base.source import Location, Source
 from grader.ros.nodes.node_facts import FieldUse, RclpyObject, TypeImport
 from grader.ros.python.bindings import names_bound
-from grader.ros.python.constants import dotted, last_name, offset_of
+from grader.ros.python.constants import dotted, last_name, make_order
 from grader.ros.python.parse import (
     AnyFunction,
     Code,
     Position,
     every_node,
     location_in,
-    position_of,
+    make_position,
 )
 from grader.ros.python.values import SCALARS, QualifiedName, Scope, Value
 from grader.ros.python.walking import children, walk
@@ -99,7 +99,7 @@ def type_imports(tree: ast.Module, source: Source) -> Iterator[TypeImport]:
                 _, _, kind = module.partition(".")
                 for alias in names if kind in _KINDS and module != "rclpy.action" else ():
                     if alias.name != "*":
-                        at = location_in(source, position_of(alias))
+                        at = location_in(source, make_position(alias))
                         yield TypeImport(f"{module}.{alias.name}", at)
             case ast.FunctionDef(body=body) | ast.AsyncFunctionDef(body=body):
                 pending += body
@@ -279,7 +279,7 @@ class _FunctionUses:
     ) -> None:
         """`given` are the types of the arguments after self; `is_node`: self is a node of rclpy."""
         self._evaluate, self._is_node = evaluate, is_node
-        self._nodes = sorted(certain_nodes(function), key=offset_of)
+        self._nodes = sorted(certain_nodes(function), key=make_order)
         self._counts = Counter[str]()
         for node in walk(function):
             match node:
@@ -312,9 +312,9 @@ class _FunctionUses:
                     ast.Assign(targets=[target], value=value)
                     | ast.AnnAssign(target=target, value=ast.expr() as value)
                 ):
-                    typed = self._type_of(value)
+                    typed = self._find_type(value)
                 case ast.For(target=target, iter=items):
-                    listed = self._type_of(items)
+                    listed = self._find_type(items)
                     typed = listed and listed._replace(path=(*listed.path, ITEM))
                 case _:
                     continue
@@ -335,7 +335,7 @@ class _FunctionUses:
             if self._counts[name] == 0 and name not in self._asked:
                 self._types[name] = typed
 
-    def _type_of(self, node: ast.expr) -> _Typed | None:
+    def _find_type(self, node: ast.expr) -> _Typed | None:
         """Return what an expression is; None where this is not certain."""
         path: list[str] = []
         while len(path) < _MAX_PATH:
@@ -363,7 +363,7 @@ class _FunctionUses:
         if self._is_node and name in _RETURNED:
             return _RETURNED[name]
         if isinstance(function, ast.Attribute) and function.attr == "now":
-            owner = self._type_of(function.value)
+            owner = self._find_type(function.value)
             return _NOW.get(owner.type) if owner is not None and not owner.path else None
         return _interface_name(self._evaluate(function)) if name else None
 
@@ -383,17 +383,17 @@ class _FunctionUses:
 
     def _uses_as_number(self, operand: ast.expr) -> Iterator[_PlacedUse]:
         """Yield the use of a parameter in place of its value, as the path of this."""
-        typed = self._type_of(operand)
+        typed = self._find_type(operand)
         if typed is not None and typed.type == _RETURNED[_GET] and not typed.path:
             yield self._with_value(
-                _PlacedUse(typed.type, ("value",), position_of(operand)), operand
+                _PlacedUse(typed.type, ("value",), make_position(operand)), operand
             )
 
     def _uses_of_attribute(
         self, node: ast.Attribute, value: ast.expr | None
     ) -> Iterator[_PlacedUse]:
         """Yield the use of a field, or of a constant, that an attribute is."""
-        typed = self._type_of(node.value)
+        typed = self._find_type(node.value)
         if typed is None and node.attr.isupper() and dotted(node.value):
             kind = _interface_name(self._evaluate(node.value))  # a constant of a type
             typed = _Typed(kind) if kind is not None else None
@@ -411,12 +411,12 @@ class _FunctionUses:
             return
         for keyword in call.keywords:
             if keyword.arg not in (None, "check_fields"):
-                use = _PlacedUse(kind, (keyword.arg or "",), position_of(keyword))
+                use = _PlacedUse(kind, (keyword.arg or "",), make_position(keyword))
                 yield self._with_value(use, keyword.value)
 
     def _with_value(self, use: _PlacedUse, node: ast.expr | None) -> _PlacedUse:
         """Return the use of a field with the value that it is set to, as far as it is known."""
-        typed = self._type_of(node) if node is not None else None
+        typed = self._find_type(node) if node is not None else None
         if node is None or (typed is not None and typed.type not in _LACKS):
             return use
         if typed is None:

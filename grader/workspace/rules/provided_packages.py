@@ -15,7 +15,7 @@ from grader.ros.known.released import (
     is_released,
     released_date,
     released_packages,
-    releases_of,
+    find_releases,
     rosdep_keys,
 )
 from grader.ros.known.releases import other_name
@@ -61,7 +61,7 @@ def _unknown_keys(workspace: Workspace, package: Package) -> Facts:
     It is a note where the name may be that of a package that is built from source.
     """
     assert package.manifest is not None
-    for source in workspace.texts.sources_of(package, (MANIFEST,)):
+    for source in workspace.texts.read_sources(package, (MANIFEST,)):
         if source.path != package.path(MANIFEST):
             continue
         for match in _DEPENDENCY.finditer(source.text):
@@ -138,7 +138,7 @@ def _of_other_release(workspace: Workspace, name: str, at: Location) -> Mismatch
         return None  # what Rolling lacks, it may have again
     if other_name("package", name, {*stated}) is not None:
         return None  # which is said of its own
-    having = enumerated([release.title() for release in releases_of(name)])
+    having = enumerated([release.title() for release in find_releases(name)])
     wanted = enumerated([release.title() for release in stated], word="or")
     message = (
         f"the package {quoted(name)} is released for {having}, and not for {wanted} "
@@ -210,7 +210,7 @@ def _named_by(workspace: Workspace, package: Package) -> Iterator[_NamedPackage]
     for source in texts.launch_sources(package):
         if source.path in launched:
             yield from (_NamedPackage(name, at) for name, at in calls_in(source))
-    for source in texts.sources_of(package, (".py", ".cpp", ".hpp")):
+    for source in texts.read_sources(package, (".py", ".cpp", ".hpp")):
         if source.path not in launched:
             for name, at in calls_in(source):
                 yield _NamedPackage(name, at, is_compared=False)

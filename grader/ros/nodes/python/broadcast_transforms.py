@@ -94,7 +94,7 @@ def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> 
         return None
     given = {f for f in _fields_given(method, made) if f.startswith("transform")}
     if made is item or given:
-        return pose_set(given, partial(_value_made, method, made), method.value_of)
+        return pose_set(given, partial(_value_made, method, made), method.evaluate_node)
     name = dotted(item) if item is not None else ""
     around = method.of_class if name.startswith("self.") else method.node
     targets: set[str] = set()
@@ -109,7 +109,7 @@ def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> 
         targets.update(map(dotted, set_here))
     start = f"{name}.transform"
     moved = {each.removeprefix(f"{name}.") for each in targets if each.startswith(start)}
-    return pose_set(moved, partial(_value_set, method, call, name), method.value_of)
+    return pose_set(moved, partial(_value_set, method, call, name), method.evaluate_node)
 
 
 def _names_set(
@@ -173,7 +173,7 @@ def _hands_on(node: ast.AST, name: str) -> bool:
         is_set = not isinstance(getattr(part, "ctx", None), ast.Load)
         if written == name:
             is_shown = isinstance(node, ast.List | ast.Tuple | ast.FormattedValue)
-            is_sent = is_shown or _is_call_of(node, _KEEPING)
+            is_sent = is_shown or _calls_method(node, _KEEPING)
             is_known = is_set or is_sent
         elif is_set:
             is_known = isinstance(node, ast.Assign | ast.AugAssign)
@@ -184,7 +184,7 @@ def _hands_on(node: ast.AST, name: str) -> bool:
     return False
 
 
-def _is_call_of(node: ast.AST, names: Collection[str]) -> bool:
+def _calls_method(node: ast.AST, names: Collection[str]) -> bool:
     """Return whether a call is one of a method with one of these names."""
     return isinstance(node, ast.Call) and dotted(node.func).rpartition(".")[2] in names
 
