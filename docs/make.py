@@ -38,7 +38,7 @@ from grader.lab.rubric.keys import (
 )
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
-from grader.report.examples import make_blocks, example_blocks, explain_kind
+from grader.report.examples import example_blocks, explain_kind, make_blocks
 from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text, list_rules
 from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal

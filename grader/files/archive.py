@@ -83,7 +83,9 @@ def read_archive(
                 stored = opened.enter_context(tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY))
                 _decompress(_DECOMPRESSORS[kind](file), stored, name, limit, allowance)
                 file = stored
-            tree = build_tree(zip_members(file) if kind == "zip" else _tar_members(file), name, limit)
+            tree = build_tree(
+                zip_members(file) if kind == "zip" else _tar_members(file), name, limit
+            )
         except ARCHIVE_ERRORS as error:
             raise FileError(
                 name, f"cannot be read as an archive: {error_text(error, name)}"

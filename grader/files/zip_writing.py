@@ -29,7 +29,7 @@ def make_zip(files: Mapping[str, bytes], executables: Collection[str] = ()) -> b
 
 
 def make_tar_gz(files: Mapping[str, bytes]) -> bytes:
-    """Return a tar.gz of files by their paths, as reproducible as a zip from `zip_of`."""
+    """Return a tar.gz of files by their paths, as reproducible as a zip from `make_zip`."""
     buffer = io.BytesIO()
     with tarfile.open(fileobj=buffer, mode="w", format=tarfile.USTAR_FORMAT) as archive:
         for path, data in sorted(files.items()):

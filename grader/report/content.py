@@ -32,7 +32,6 @@ from grader.report.criteria import (
     Line,
     Section,
     alike,
-    make_blocks,
     carried_text,
     hint_text,
     is_absent,
@@ -41,9 +40,10 @@ from grader.report.criteria import (
     is_not_found,
     looked_for,
     lost_points,
-    write_points,
+    make_blocks,
     name_status,
     sum_text,
+    write_points,
 )
 from grader.report.readings import UNDECIDED, VERDICTS, problem_line
 from grader.ros.api import RECOVERED
@@ -333,7 +333,8 @@ def _join_equal(entries: Iterable[Entry]) -> Iterator[Entry]:
     for _, (first, *others) in alike(entries, _reason_to_join):
         names = enumerated([entry.id for entry in others])
         line = Line(
-            "alike", f"The same holds for {names} ({write_points(entry.result for entry in others)})."
+            "alike",
+            f"The same holds for {names} ({write_points(entry.result for entry in others)}).",
         )
         yield first._replace(also=tuple(others), blocks=(*first.blocks, line)) if others else first
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.base.extents import find_end, end_offset, ended
+from grader.base.extents import end_offset, ended, find_end
 from grader.base.source import Location, Source
 
 # Of each language a text in which « and » stand around what is meant.

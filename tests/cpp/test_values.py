@@ -6,7 +6,7 @@ from grader.ros.cpp.cpp_evaluation import CppEvaluation, LibraryCalls
 from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue
 from grader.ros.cpp.declarations import CppFile
 from grader.ros.cpp.syntax import parse_cpp
-from grader.ros.cpp.unit import CppUnit, list_arguments, called_name
+from grader.ros.cpp.unit import CppUnit, called_name, list_arguments
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import Unknown
 

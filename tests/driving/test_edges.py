@@ -6,7 +6,7 @@ from grader.base.errors import NotDecided, RubricError
 from grader.lab.checks import driving
 from grader.ros.urdf import resting
 from grader.ros.urdf.driving import describe_driving, plan_drive
-from grader.ros.urdf.resting import make_body, find_rest
+from grader.ros.urdf.resting import find_rest, make_body
 from grader.ros.urdf.standing_robot import StandingRobot
 from tests.driving.test_laws import base, configuration, part
 

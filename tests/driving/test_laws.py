@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from grader.base.transforms import unit
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
-from grader.ros.urdf.resting import make_body, find_rest
+from grader.ros.urdf.resting import find_rest, make_body
 from grader.ros.urdf.standing_robot import StandingRobot
 from tests.examples import examples
 

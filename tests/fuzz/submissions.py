@@ -14,7 +14,7 @@ from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Hint, Report, Result
 from grader.lab.hints.search import list_gains
 from grader.lab.rubric.rubric import Rubric
-from grader.lab.submission.opening import read_submission, make_submission
+from grader.lab.submission.opening import make_submission, read_submission
 from grader.lab.submission.submission import Submission
 from grader.report.formats import Format, render
 from tests.checks.submissions import file_of

@@ -12,7 +12,7 @@ from grader.lab.checks.manual import answered, evidence_shown
 from grader.lab.checks.outcome import Outcome
 from grader.lab.checks.registry import own_checks
 from grader.lab.documents.pictures import EmbeddedPicture
-from grader.lab.grading.criterion_pictures import may_have_pictures, find_pictures
+from grader.lab.grading.criterion_pictures import find_pictures, may_have_pictures
 from grader.lab.grading.report import Result
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.submission.submission import Opening

@@ -9,7 +9,7 @@ from hypothesis import given as hypothesis_given
 from hypothesis import strategies as st
 
 from grader.ros.launch.launch_model import Launch, StartedNode
-from grader.ros.launch.node_parameters import NodeParameters, list_controllers, collect_parameters
+from grader.ros.launch.node_parameters import NodeParameters, collect_parameters, list_controllers
 from grader.ros.python.values import Unknown
 from tests.launch.launch_samples import Installed, read
 

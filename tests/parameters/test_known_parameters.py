@@ -14,11 +14,11 @@ from grader.ros.known.package_rows import usual_names
 from grader.ros.known.parameter_rows import (
     COVERED,
     ParameterRow,
+    find_rows,
     known_nodes,
     node_called,
     node_rows,
     row_for,
-    find_rows,
 )
 from grader.ros.known.releases import RELEASES, Release
 from grader.workspace.opening.all_robots import read_workspace

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.base.toml_file import TomlPath as Path
-from grader.base.toml_file import key_lines, find_line
+from grader.base.toml_file import find_line, key_lines
 from tests.examples import examples
 
 pytestmark = pytest.mark.slow

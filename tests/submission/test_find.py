@@ -12,7 +12,7 @@ from grader.base.errors import InputError
 from grader.files.tree import File, Tree, make_tree
 from grader.lab.grading.grade import grade
 from grader.lab.submission.labs import LabFolders
-from grader.lab.submission.opening import open_submission, make_submission
+from grader.lab.submission.opening import make_submission, open_submission
 from grader.lab.submission.selection import UrdfChoice, UrdfSearch
 from grader.lab.submission.submission import DEFAULTS, Lab
 from grader.ros.package.finding import find_packages, read_packages

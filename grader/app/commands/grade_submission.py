@@ -18,7 +18,10 @@ def grade_and_save(request: GradeRequest, warn: Warn, show: Callable[[GradeRun],
     if request.fix is not None and run.fix is not None:
         from grader.app.hints_and_fix import files_to_fix  # late: few ask for it
 
-        others = [*list_files(request.rubric, request.answers), *(file for _, file in request.saves)]
+        others = [
+            *list_files(request.rubric, request.answers),
+            *(file for _, file in request.saves),
+        ]
         files = files_to_fix(request.fix, request.path, run.report, run.fix, run.besides, others)
     show(run)
     save_reports(request, run)

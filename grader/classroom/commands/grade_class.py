@@ -56,7 +56,7 @@ from grader.classroom.run.batch_run import Batch
 from grader.classroom.run.batch_worker import ClassContext, reference_hashes
 from grader.classroom.run.preloading import PRELOAD
 from grader.classroom.tables import SIZE_LIMIT
-from grader.files.reading import read_capped, hash_bytes
+from grader.files.reading import hash_bytes, read_capped
 from grader.lab.rubric.rubric import Rubric, load_rubric
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC, list_files
 from grader.lab.submission.opening import open_submission

@@ -23,7 +23,7 @@ from grader.files.tree import Tree
 from grader.lab.documents.evidence import EVIDENCE
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.labs import LabFolders
-from grader.lab.submission.opening import read_submission, make_submission
+from grader.lab.submission.opening import make_submission, read_submission
 from grader.lab.submission.submission import DEFAULTS, Opening, Submission
 from grader.ros.api import is_robot
 

@@ -21,8 +21,8 @@ from grader.classroom.intake.class_files import ClassListing, list_class
 from grader.classroom.intake.layouts import (
     ClassFolder,
     NamedPath,
-    list_submissions,
     is_submission,
+    list_submissions,
     names_in,
     nbgrader,
     read_name,

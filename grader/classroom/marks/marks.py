@@ -38,7 +38,7 @@ from grader.classroom.marks.gradebook_folder import lock
 from grader.classroom.roster.lateness import read_time
 from grader.classroom.roster.typed_names import NotCountedError, known, number_in, read_points
 from grader.classroom.tables import SIZE_LIMIT, Table, TableRow, protected, read_table, unprotected
-from grader.files.reading import read_capped, hash_bytes
+from grader.files.reading import hash_bytes, read_capped
 from grader.lab.rubric.criterion import DEADLINE, GRADE, TOTAL
 from grader.lab.rubric.keys import MAX_POINTS
 from grader.lab.rubric.rubric import Rubric

@@ -22,7 +22,7 @@ from zlib import crc32
 
 from grader.base.errors import InputError
 from grader.base.text import MAX_NAMED, enumerated, printable_path
-from grader.files.reading import read_error, hash_bytes
+from grader.files.reading import hash_bytes, read_error
 from grader.lab.checks.outcome import Status
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]

@@ -20,9 +20,9 @@ from grader.lab.checks.outcome import compute_location
 from grader.lab.documents.pictures import EmbeddedPicture, NotShown
 from grader.lab.grading.criterion_pictures import (
     evidence_files,
+    find_pictures,
     loose_lines,
     may_have_pictures,
-    find_pictures,
 )
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Report, Result

@@ -15,8 +15,8 @@ from grader.ros.python.budget import Budget
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.ros.xml.elements import (
-    list_attributes,
     foreign_elements,
+    list_attributes,
     read_name,
     readable,
     text_in,

@@ -21,9 +21,9 @@ from grader.lab.authoring.trees import (
     move_frame,
     own_elements,
     parent_joint,
+    read_vector,
     split_joint,
     write_tree,
-    read_vector,
 )
 from grader.lab.checks.check import EQUIVALENTS
 from grader.ros.package.robot_file import Read, Urdf
@@ -203,7 +203,7 @@ def _turn_mimic_joints(tree: Element, rules: RewritingRules) -> bool:
 
 
 def _change_layout(tree: Element, _: RewritingRules) -> bool:
-    """Reverse the order of attributes, and add comments; `text_of` changes the white space."""
+    """Reverse the order of attributes, and add comments; `write_tree` changes the white space."""
     for index, element in enumerate([*own_elements(tree, "*")]):
         attributes = [*reversed(element.attrib.items())]
         element.attrib.clear()

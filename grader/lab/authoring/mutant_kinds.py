@@ -52,7 +52,7 @@ class KindScore(NamedTuple):
 def find_kind(family: str) -> str:
     """Return the kind of a family of mutants.
 
-    >>> kind_of("number x10")
+    >>> find_kind("number x10")
     'numbers'
     """
     for kind, starts in _KINDS.items():

@@ -91,7 +91,9 @@ def reference_failures(rubric: Rubric) -> _Failures:
 
 
 def _lines(rubric: Rubric, notes: Iterable[tuple[TomlPath, str]]) -> tuple[str, ...]:
-    return tuple(one_line_each(rubric.path, [(rubric.find_line(path), what) for path, what in notes]))
+    return tuple(
+        one_line_each(rubric.path, [(rubric.find_line(path), what) for path, what in notes])
+    )
 
 
 def _make_path(criterion: Criterion) -> TomlPath:
@@ -131,7 +133,7 @@ def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]
             alone = replace(rubric, criteria=(row,))
             for result in decide(alone, rubric.solution.submission, {row.id}):
                 if result.outcome.status != "passed":
-                    # Of a single table the place has no index; `place_of` then finds the
+                    # Of a single table the place has no index; `find_place` then finds the
                     # criterion's.
                     several = (index,) if len(criterion.carried) > 1 else ()
                     path = ("criterion", criterion.position, "carried", *several, "with")

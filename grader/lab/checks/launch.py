@@ -13,7 +13,7 @@ from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import About
 from grader.lab.checks.installed_files import INSTALLING, files_of_kind, require_installed
-from grader.lab.checks.launching import STOPS, fault_that_stops, evaluate_launch, path_of_launch
+from grader.lab.checks.launching import STOPS, evaluate_launch, fault_that_stops, path_of_launch
 from grader.lab.checks.outcome import Outcome, failed, judged, passed
 from grader.lab.checks.started_nodes import Fault, Wanted, find_faults
 from grader.lab.submission.submission import Submission
@@ -192,9 +192,7 @@ def _names_in(launch: "Launch", names: Iterable[str]) -> list[str]:
     ]
 
 
-def _add_components(
-    submission: Submission, launch: "Launch", names: Sequence[str]
-) -> list[str]:
+def _add_components(submission: Submission, launch: "Launch", names: Sequence[str]) -> list[str]:
     """Return names of nodes with those of the components that are the nodes of these programs."""
     code = submission.workspace.code
     all_names = [*names]

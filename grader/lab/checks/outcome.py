@@ -120,7 +120,9 @@ def pending(message: str, cause: str = "", at: _AnyPlace = None, *, problem: str
 
     `cause` is the reason without what differs between students.
     """
-    return Outcome("pending", message, location=compute_location(at), mistake=cause, problem=problem)
+    return Outcome(
+        "pending", message, location=compute_location(at), mistake=cause, problem=problem
+    )
 
 
 def failed(

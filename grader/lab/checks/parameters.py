@@ -124,7 +124,7 @@ def _value_or_default(
 ) -> tuple[str, ParameterValue]:
     """Return the value that a node gets, or else its default, after the words for that.
 
-    Raises MissingElement and NotDecided, as `value_of` does.
+    Raises MissingElement and NotDecided, as `find_value` does.
     """
     try:
         return f"{quoted(node)} gets {parameter} =", find_value(submission, node, parameter)

@@ -22,8 +22,8 @@ from grader.lab.documents.headings import (
     has_words,
     is_about,
     matches,
-    read_question,
     read_label,
+    read_question,
     stem,
 )
 
@@ -280,7 +280,9 @@ class _AnswerSearch:
             if (
                 len(items) > 1 and min(min(item.label.steps) for item in items) == 1
             ):  # perhaps the points of one answer
-                whole = self._find_passage(document, items[0]._replace(end=items[-1].end)) or passage
+                whole = (
+                    self._find_passage(document, items[0]._replace(end=items[-1].end)) or passage
+                )
                 how = (
                     f"a numbered list below the heading of task {head.task}, whose items may be "
                     "steps or not"
@@ -314,7 +316,9 @@ class _AnswerSearch:
                 is_question = wanted.pattern == ("question",) and "question" in head.pattern
                 if is_question or head.pattern == wanted.pattern:
                     heads.append((document, head))
-            passages = [self._find_passage(document, head) for document, head in heads[:_MAX_MATCHES]]
+            passages = [
+                self._find_passage(document, head) for document, head in heads[:_MAX_MATCHES]
+            ]
             answers = [passage for passage in passages if passage is not None]
             match = _match_answer(wanted, self._task, answers)
             if match is not None:
@@ -334,7 +338,11 @@ class _AnswerSearch:
         text = text[:_MAX_TEXT] + (" [...]" if len(text) > _MAX_TEXT else "")
         at = Location(document.file.path, start + 1, 1)
         return Passage(
-            text, at, _describe_place(document, head, at), head, is_empty=self._is_question_only(text)
+            text,
+            at,
+            _describe_place(document, head, at),
+            head,
+            is_empty=self._is_question_only(text),
         )
 
     def _is_question_only(self, text: str) -> bool:

@@ -15,7 +15,7 @@ from grader.base.source import LazyLocation, Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import Check
 from grader.lab.checks.loading import urdf_loads
-from grader.lab.checks.outcome import Outcome, find_fault, compute_location, pending
+from grader.lab.checks.outcome import Outcome, compute_location, find_fault, pending
 from grader.lab.grading.report import Result
 from grader.lab.grading.subjects import Subjects
 from grader.lab.rubric.criterion import Carried, Criterion
@@ -280,7 +280,9 @@ class _Grading:
         except BaseException as error:  # noqa: BLE001
             from traceback import format_exc  # needed only for a fault of the grader
 
-            return Result(criterion, _fault_outcome(check, _describe_error(error)), traceback=format_exc())
+            return Result(
+                criterion, _fault_outcome(check, _describe_error(error)), traceback=format_exc()
+            )
 
     def _fail_or_skip(self, criterion: Criterion, missing: MissingElement) -> Result:
         """Return a failure for the first criterion that misses a thing.

@@ -15,7 +15,7 @@ from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Hint, Report, Result
 from grader.lab.hints.edits import MAX_IN_HINT, FoundHint
 from grader.lab.hints.robot_draft import Draft
-from grader.lab.hints.search import HintSearch, Trials, sum_costs, hints_on_slips, judged_results
+from grader.lab.hints.search import HintSearch, Trials, hints_on_slips, judged_results, sum_costs
 from grader.lab.rubric.hint_levels import HintLevel
 from grader.lab.rubric.rubric import ReferenceSolution
 from grader.lab.submission.edited import content, edited_files, with_files

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.problems import Fix
 from grader.base.source import Source
-from grader.lab.checks.parameters import measured, find_value
+from grader.lab.checks.parameters import find_value, measured
 from grader.lab.hints.edits import Proposal, Proposals
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package

@@ -129,7 +129,8 @@ def file_proposals(task: PackageTask, kind: str) -> Proposals:
         same_kind = [
             file
             for file in task.files
-            if kind in (_classify_file(file), posixpath.dirname(file)) or file.startswith(f"{folder}/")
+            if kind in (_classify_file(file), posixpath.dirname(file))
+            or file.startswith(f"{folder}/")
         ]
         yield from _rename(
             task, kind, name, [file for file in same_kind if posixpath.basename(file) not in names]

@@ -99,7 +99,11 @@ class RobotDifference:
                 if like.tag == "link":
                     parts.append(MissingPart("link", like.get("name") or ""))
                 elif like.tag == "joint":
-                    ends = (read_end(like, "child"), like.get("type") or "", read_end(like, "parent"))
+                    ends = (
+                        read_end(like, "child"),
+                        like.get("type") or "",
+                        read_end(like, "parent"),
+                    )
                     parts.append(MissingPart("joint", *ends))
         return parts
 

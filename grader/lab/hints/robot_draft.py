@@ -276,7 +276,10 @@ class Draft:
         if element is None or len(sets) != 2 or any(one.element is not element for one in sets):
             return ways
         first, second = sets
-        wanted = [read_values(element.get(second.attribute)), read_values(element.get(first.attribute))]
+        wanted = [
+            read_values(element.get(second.attribute)),
+            read_values(element.get(first.attribute)),
+        ]
         if not all(wanted) or [read_values(first.value), read_values(second.value)] != wanted:
             return ways
         source, start = self.source.element(self._tags[element])

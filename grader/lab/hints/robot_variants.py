@@ -356,7 +356,9 @@ def whole_links(difference: RobotDifference) -> Pieces:
         if link not in difference.known:
             continue
         poses = [change for change in sets if _is_pose(change)]
-        carried = {joint for joint in difference.draft.joints() if read_end(joint, "parent") == link}
+        carried = {
+            joint for joint in difference.draft.joints() if read_end(joint, "parent") == link
+        }
         after = [
             change
             for change in every_set

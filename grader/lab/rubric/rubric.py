@@ -18,13 +18,13 @@ from grader.base.text import printable_path, shell_quoted, texts_in
 from grader.base.toml_file import (
     TomlPath,
     TomlRow,
-    raise_complaints,
-    key_lines,
     find_line,
+    key_lines,
+    raise_complaints,
     read_toml,
 )
 from grader.files.limits import ARCHIVES, ROBOT_ENDINGS
-from grader.files.reading import read_capped, hash_bytes, shipped_folder
+from grader.files.reading import hash_bytes, read_capped, shipped_folder
 from grader.lab.checks.check import LINK_ARGUMENTS
 from grader.lab.checks.manual import answered
 from grader.lab.rubric.criterion import (

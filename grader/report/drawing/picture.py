@@ -24,7 +24,7 @@ from grader.ros.api import (
     Sphere,
     UnknownShape,
     Visual,
-    travel_of,
+    find_travel,
     turning_joint,
 )
 
@@ -252,7 +252,7 @@ def _wheel(scene: Scene, link: str) -> Wheel | None:
     centre = scene.centre(link)
     with suppress(*_NOT_KNOWN):
         joint = turning_joint(scene.robot, link, scene.frame)
-        travel, _ = travel_of(scene.robot, link, joint, scene.frame, Z_AXIS)
+        travel, _ = find_travel(scene.robot, link, joint, scene.frame, Z_AXIS)
         if centre is not None and travel is not None:
             return Wheel(centre, travel)
         return None

@@ -22,8 +22,8 @@ from grader.report.drawing.views import (
     FreePlaces,
     Panel,
     Place,
-    list_frames,
     from_back_to_front,
+    list_frames,
     make_panels,
 )
 

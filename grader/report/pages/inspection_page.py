@@ -12,10 +12,10 @@ from grader.report.inspection import (
     MAX_LISTED,
     NO_FAILURE,
     Inspection,
+    choose_look,
     effect,
     lists,
     log_line,
-    choose_look,
     robot_line,
 )
 from grader.report.locations import source_lines

@@ -7,7 +7,7 @@ from itertools import groupby
 from grader.base.text import format_points, printable
 from grader.lab.checks.registry import GRAPH_CHECKS
 from grader.lab.documents.pictures import PDF, EmbeddedPicture
-from grader.lab.grading.criterion_pictures import may_have_pictures, find_pictures
+from grader.lab.grading.criterion_pictures import find_pictures, may_have_pictures
 from grader.lab.grading.report import Report
 from grader.report import content
 from grader.report.content import report_sections

@@ -12,15 +12,15 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.base.text import counted, printable
-from grader.report.causes import Cause, CauseKind, group_problems, group_causes, places_text
+from grader.report.causes import Cause, CauseKind, group_causes, group_problems, places_text
 from grader.report.inspection import (
     EFFECTS,
     NO_FAILURE,
     Inspection,
+    choose_look,
     effect,
     lists,
     log_line,
-    choose_look,
     problem_counts,
     robot_line,
 )
@@ -30,8 +30,8 @@ from grader.report.writers.terminal_page import (
     SEVERITY_LOOKS,
     Page,
     block,
-    excerpt_block,
     count_rows,
+    excerpt_block,
     shortened,
 )
 

@@ -22,7 +22,7 @@ from grader.report.content import (
     head,
     report_sections,
 )
-from grader.report.criteria import Entry, earned_text, is_failure, plain_lines, name_status
+from grader.report.criteria import Entry, earned_text, is_failure, name_status, plain_lines
 from grader.report.locations import archive_around
 
 # The element for each status of a criterion that is not passed.

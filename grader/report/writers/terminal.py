@@ -36,10 +36,10 @@ from grader.report.criteria import (
     groups,
     is_failure,
     is_manual,
-    pending_reason,
-    write_points,
-    remarks_on,
     name_status,
+    pending_reason,
+    remarks_on,
+    write_points,
 )
 from grader.report.locations import diff_lines, location_text
 from grader.report.screen import link_to
@@ -49,8 +49,8 @@ from grader.report.writers.terminal_page import (
     SEVERITY_LOOKS,
     Page,
     block,
-    excerpt_block,
     count_rows,
+    excerpt_block,
 )
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue, not_kn
 from grader.ros.cpp.declarations import (
     CppFunction,
     CppVariable,
-    find_declaration,
     declared_in,
+    find_declaration,
     is_constant,
     plain_name,
 )
@@ -22,9 +22,9 @@ from grader.ros.cpp.literals import (
 from grader.ros.cpp.syntax import CppNode, parse_cpp
 from grader.ros.cpp.unit import (
     CppUnit,
-    list_arguments,
     called_name,
     is_conditional,
+    list_arguments,
     template_arguments,
 )
 from grader.ros.python.budget import Budget, OutOfBudget
@@ -160,7 +160,10 @@ class CppEvaluation:
             value = self.evaluate_node(node.child("argument"))
             is_number = isinstance(value, int | float) and not isinstance(value, bool)
             return -value if sign == "-" and is_number else not_known("it is computed")
-        left, right = self.evaluate_node(node.child("left")), self.evaluate_node(node.child("right"))
+        left, right = (
+            self.evaluate_node(node.child("left")),
+            self.evaluate_node(node.child("right")),
+        )
         if sign == "+" and (_is_textual(left) or _is_textual(right)):
             return _joined([left, right])
         return not_known("it is computed")

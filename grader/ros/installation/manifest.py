@@ -9,7 +9,7 @@ from grader.base.reuse import reuse
 from grader.base.source import Location, Source
 from grader.ros.installation import package_problems as kinds
 from grader.ros.installation.manifest_conditions import evaluate_condition
-from grader.ros.installation.manifest_rules import read_email, find_refusals, read_tag, read_text
+from grader.ros.installation.manifest_rules import find_refusals, read_email, read_tag, read_text
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile, recover_xml
 
 _MAX_MISPLACED = 100  # dependencies in <export>

@@ -34,7 +34,7 @@ from grader.ros.python.budget import Budget
 from grader.ros.python.evaluation import Evaluation, PythonError
 from grader.ros.python.interpreter import Interpreter
 from grader.ros.python.library import MAX_PATH, PACKAGE_FOLDER, standard_functions
-from grader.ros.python.parse import START, Code, Position, SyntaxFault, parse, make_position
+from grader.ros.python.parse import START, Code, Position, SyntaxFault, make_position, parse
 from grader.ros.python.values import (
     PLAIN,
     SCALARS,

@@ -66,7 +66,7 @@ def is_released(name: str, releases: Collection[Release] = ()) -> bool:
 def find_releases(name: str) -> tuple[Release, ...]:
     """Return the releases for which a package is released, in their order.
 
-    >>> releases_of("ros_ign_bridge")
+    >>> find_releases("ros_ign_bridge")
     ('foxy', 'galactic', 'humble', 'iron')
     """
     having = _table().releases.get(name, frozenset())

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from grader.ros.installation.places import PREFIX, SHARE
-from grader.ros.launch.call_arguments import items_in, describe_kind
+from grader.ros.launch.call_arguments import describe_kind, items_in
 from grader.ros.launch.components import load_by_command, load_components, start_container
 from grader.ros.launch.launch_classes import (
     CONDITION,

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from grader.base import markup
 from grader.base.source import Source
-from grader.ros.python.parse import Code, location_in, parse, make_position
+from grader.ros.python.parse import Code, location_in, make_position, parse
 from grader.ros.python.walking import walk
 from grader.ros.xml.parsing import XmlFault, XmlFile
 

@@ -21,7 +21,12 @@ from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.installation.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.ros.known.releases import Release
 from grader.ros.launch.actions import ActionVisitor, Include, NotIncluded
-from grader.ros.launch.call_arguments import LaunchFunctions, join_path, describe_kind, texts_from_paths
+from grader.ros.launch.call_arguments import (
+    LaunchFunctions,
+    describe_kind,
+    join_path,
+    texts_from_paths,
+)
 from grader.ros.launch.launch_classes import (
     DESCRIPTION,
     JOINED_PATH,
@@ -326,7 +331,9 @@ def _description_error(value: Value) -> str:
         case Call() if is_a(value.name, DESCRIPTION):
             return ""
         case _:
-            return f"{_ENTRY} does not return a LaunchDescription([...]), but {describe_kind(value)}"
+            return (
+                f"{_ENTRY} does not return a LaunchDescription([...]), but {describe_kind(value)}"
+            )
 
 
 def _forgotten_node(node: Call, findings: Findings) -> StartedNode:

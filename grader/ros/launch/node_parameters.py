@@ -17,7 +17,14 @@ from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml,
 from grader.ros.config.yaml_values import is_misspelt_key
 from grader.ros.installation.places import PREFIX
 from grader.ros.known.package_rows import program_row
-from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, describe_kind, read_type
+from grader.ros.launch.call_arguments import (
+    FILE,
+    SCALARS,
+    TYPED,
+    describe_kind,
+    items_in,
+    read_type,
+)
 from grader.ros.launch.launch_model import (
     NAMESPACE,
     Contents,
@@ -272,7 +279,8 @@ def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> An
     ):
         hint = "write ParameterValue(..., value_type=str)"
         raise EvaluationFails(
-            f"the parameter {name!r} is read as YAML, and is {describe_kind(loaded)} then: {hint}", at
+            f"the parameter {name!r} is read as YAML, and is {describe_kind(loaded)} then: {hint}",
+            at,
         )
     return loaded
 

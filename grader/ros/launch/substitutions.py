@@ -12,7 +12,7 @@ from pathlib import PurePosixPath
 from grader.base.text import enumerated
 from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.installation.places import HOME, PREFIX, SHARE
-from grader.ros.known.package_rows import package_row, find_programs
+from grader.ros.known.package_rows import find_programs, package_row
 from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import RELEASES
 from grader.ros.launch.launch_model import Contents, Context, FileText, Resolved

@@ -13,7 +13,7 @@ from grader.files.reading import hash_bytes
 from grader.files.tree import File, Tree
 from grader.ros.package.installed_files import look_up
 from grader.ros.package.mesh_content import LFS_POINTER
-from grader.ros.package.mesh_files import RELATIVE, MeshFile, mesh_file, list_meshes
+from grader.ros.package.mesh_files import RELATIVE, MeshFile, list_meshes, mesh_file
 from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.model import Mesh

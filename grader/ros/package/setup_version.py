@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from grader.base.source import Location, Source
 from grader.ros.python.constants import last_name
-from grader.ros.python.parse import Code, every_node, location_in, parse, make_position
+from grader.ros.python.parse import Code, every_node, location_in, make_position, parse
 
 
 class _SetupVersion(NamedTuple):

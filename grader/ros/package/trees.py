@@ -218,7 +218,10 @@ def _list_xml_children(
         ]
     return [
         *attributes,
-        *(xml_entry(child, locate, releases, names.get(read_name(child), "")) for child in children),
+        *(
+            xml_entry(child, locate, releases, names.get(read_name(child), ""))
+            for child in children
+        ),
     ]
 
 

@@ -10,12 +10,12 @@ from grader.ros.python import values as py
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import (
     call_plain,
+    charge_str,
     checked_key,
-    list_items,
+    explain_unknown,
     iterate,
     known,
-    explain_unknown,
-    charge_str,
+    list_items,
     too_large,
 )
 

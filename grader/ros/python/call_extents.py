@@ -4,7 +4,7 @@ import ast
 from collections.abc import Mapping
 
 from grader.base.source import Source
-from grader.ros.python.parse import Code, Position, location_in, parse, make_position
+from grader.ros.python.parse import Code, Position, location_in, make_position, parse
 from grader.ros.python.walking import walk
 
 

@@ -19,7 +19,7 @@ from grader.ros.python.expressions import Expressions
 from grader.ros.python.library import USUAL_NAMES, usual_meaning
 from grader.ros.python.operators import method, operate
 from grader.ros.python.parse import START, Position, make_position
-from grader.ros.python.values import call_plain, known, explain_unknown
+from grader.ros.python.values import call_plain, explain_unknown, known
 from grader.ros.python.walking import walk
 
 

@@ -33,8 +33,8 @@ from grader.ros.python.library import (
     usual_meaning,
 )
 from grader.ros.python.operators import has_attribute, operate
-from grader.ros.python.parse import Code, Position, bound_in, own_nodes, make_position
-from grader.ros.python.values import call_plain, known, refuse, charge_str
+from grader.ros.python.parse import Code, Position, bound_in, make_position, own_nodes
+from grader.ros.python.values import call_plain, charge_str, known, refuse
 from grader.ros.python.walking import walk
 
 _PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
@@ -80,7 +80,9 @@ class _ClassScope(py.Scope):
 def _stop_at(node: ast.FunctionDef) -> Iterator[py.Value]:
     """Raise Undetermined where the first item of a generator function is needed."""
     yield from ()
-    raise py.Undetermined("a generator function is not evaluated", make_position(node), is_final=True)
+    raise py.Undetermined(
+        "a generator function is not evaluated", make_position(node), is_final=True
+    )
 
 
 def _catches(kind: ast.expr | None, raised: py.EvaluationFails, at: Position) -> bool:

@@ -14,7 +14,7 @@ from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import Release
 from grader.ros.python import values as py
 from grader.ros.python.budget import CHARACTERS, Budget
-from grader.ros.python.values import call_plain, list_items, known, refuse, charge_str, too_large
+from grader.ros.python.values import call_plain, charge_str, known, list_items, refuse, too_large
 
 _WIDE = re.compile(r"\*|\d{3}")
 _FIELD = re.compile(r"\{(?:\w*)\}")

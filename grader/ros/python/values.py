@@ -2,8 +2,8 @@
 
 They are Python's own, and stand-ins for functions, iterators and what is not evaluated.
 
-What is not known raises Undetermined where it is needed: `known`, `iterate` and `str_of` are the
-ways to a value.
+What is not known raises Undetermined where it is needed: `known`, `iterate` and `charge_str` are
+the ways to a value.
 """
 
 import ast

@@ -497,7 +497,9 @@ class Configuration:
             and all(above.known.mimic is None for above in chain)
         ):
             T_relative_joint = self.pose(joint.child, relative_to=relative_to)
-            turn = _compute_motion(joint, angle) or IDENTITY  # everything below the joint turns together
+            turn = (
+                _compute_motion(joint, angle) or IDENTITY
+            )  # everything below the joint turns together
             return T_relative_joint @ turn @ T_relative_joint.inverse()
         moved = self.moved(joint, self.position(joint) + angle).pose(link, relative_to=relative_to)
         return moved @ self.pose(link, relative_to=relative_to).inverse()

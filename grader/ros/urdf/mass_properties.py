@@ -12,7 +12,7 @@ from itertools import combinations, combinations_with_replacement
 from math import hypot, isfinite, nan
 from typing import NamedTuple
 
-from grader.base.transforms import Rotation, Transform, Vector, add_up, dot, weighted_mean, minus
+from grader.base.transforms import Rotation, Transform, Vector, add_up, dot, minus, weighted_mean
 from grader.ros.urdf.model import (
     INERTIA,
     Box,

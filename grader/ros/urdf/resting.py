@@ -21,9 +21,9 @@ from grader.base.transforms import (
     cross,
     degrees_between,
     dot,
-    weighted_mean,
     minus,
     unit,
+    weighted_mean,
 )
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Capsule, Collision, Cylinder, Mesh, Visual

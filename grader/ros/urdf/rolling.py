@@ -15,10 +15,10 @@ from grader.base.transforms import (
     add_up,
     cross,
     dot,
-    weighted_mean,
     minus,
     rotation_about,
     unit,
+    weighted_mean,
 )
 from grader.ros.urdf.model import Joint
 from grader.ros.urdf.resting import level_directions, moved

@@ -12,11 +12,11 @@ from grader.ros.urdf.model import Joint, Link
 from grader.ros.urdf.resting import (
     MAX_SHAPES,
     Rest,
-    make_body,
     find_rest,
     level_directions,
     list_fall,
     lowest_points,
+    make_body,
     solid_shapes,
 )
 from grader.ros.urdf.rolling import Course, DrivenWheel, mean

@@ -20,8 +20,8 @@ from grader.ros.python.values import (
     Undetermined,
     Value,
     call_plain,
-    checked_key,
     charge_str,
+    checked_key,
 )
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")

@@ -29,7 +29,7 @@ _READ: tuple[EndSource, ...] = ("code", "controller")
 class Graph:
     """What runs after each launch file of a workspace is launched on its own.
 
-    `graph_of` makes it once; the rules of topics, services, messages and transforms ask it.
+    `make_graph` makes it once; the rules of topics, services, messages and transforms ask it.
 
     The iterators charge the budget of the workspace for what they yield, and raise NotDecided.
     """

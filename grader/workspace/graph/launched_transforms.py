@@ -6,12 +6,12 @@ A node of own code is read with what it gives to a broadcaster, so that each fra
 from collections.abc import Collection, Iterator
 
 from grader.ros.known.end_rows import opened_ends
-from grader.ros.known.package_rows import package_row, find_transforms
+from grader.ros.known.package_rows import find_transforms, package_row
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.static_transforms import STATIC_PUBLISHER
 from grader.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
 from grader.workspace.graph.code_ends import transforms_sent
-from grader.workspace.graph.gazebo_topics import roots, name_system
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.launch_graph import (
     GraphNode,
     GraphTransform,

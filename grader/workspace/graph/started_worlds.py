@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from grader.base.source import Location
 from grader.ros.xml.parsing import XmlFile
-from grader.workspace.graph.gazebo_topics import roots, name_system
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.started_controllers import defined_controllers
 from grader.workspace.model.workspace import Workspace
 

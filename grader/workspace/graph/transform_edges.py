@@ -10,7 +10,7 @@ from grader.base.source import Location
 from grader.base.text import quoted
 from grader.base.transforms import Transform
 from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
-from grader.ros.known.package_rows import DecidingParameter, package_row, find_transforms
+from grader.ros.known.package_rows import DecidingParameter, find_transforms, package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.package.package import Package
@@ -24,7 +24,7 @@ from grader.ros.python.values import Unknown
 from grader.ros.xml.parsing import Element
 from grader.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
 from grader.workspace.graph.code_ends import list_frames
-from grader.workspace.graph.gazebo_topics import roots, name_system
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.workspace.model.workspace import Workspace
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping
 
 from grader.ros.interfaces.known_interfaces import known_interfaces
-from grader.ros.known.package_rows import known_packages, find_programs
+from grader.ros.known.package_rows import find_programs, known_packages
 from grader.ros.package.package import Package
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Definition

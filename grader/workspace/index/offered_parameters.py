@@ -6,7 +6,7 @@ The nodes are own nodes, controllers and well-known nodes.
 from collections.abc import Iterator
 
 from grader.ros.known.package_rows import usual_names
-from grader.ros.known.parameter_rows import node_rows, row_for, find_rows
+from grader.ros.known.parameter_rows import find_rows, node_rows, row_for
 from grader.ros.known.parameter_texts import row_text
 from grader.ros.known.releases import Release
 from grader.ros.nodes.node_facts import NodeParameter

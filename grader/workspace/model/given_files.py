@@ -9,8 +9,8 @@ from grader.ros.launch.launch_model import GivenParameters, StartedNode
 from grader.ros.launch.node_parameters import (
     FileTables,
     NodeParameters,
-    list_controllers,
     collect_parameters,
+    list_controllers,
     read_tables,
 )
 from grader.ros.package.installed_files import are_installs_known, meant_file, open_meant

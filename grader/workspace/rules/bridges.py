@@ -630,7 +630,10 @@ def _may_include_bridge(workspace: Workspace) -> bool:
     """Return whether a launch file includes one of another package that may have a bridge."""
     for _, launch in workspace.launches.roots:
         for passed in launch.passed:
-            if not workspace.installed.find_source(passed.path) and "/ros_gz_sim/" not in passed.path:
+            if (
+                not workspace.installed.find_source(passed.path)
+                and "/ros_gz_sim/" not in passed.path
+            ):
                 return True
     return False
 

@@ -24,7 +24,7 @@ from grader.workspace.graph.compared_robots import (
     robots_for_file,
     robots_for_launch,
 )
-from grader.workspace.graph.gazebo_topics import roots, name_system
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.under_arguments import names_under_arguments
 from grader.workspace.model.workspace import Workspace

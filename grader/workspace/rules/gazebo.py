@@ -15,7 +15,7 @@ from grader.ros.known.package_tables import create_table
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.xml.parsing import Element, XmlFile
 from grader.workspace.graph.bridge_rows import BRIDGE
-from grader.workspace.graph.gazebo_topics import roots, name_system
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.started_worlds import started_worlds
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (

@@ -7,7 +7,7 @@ from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.gazebo_rows import gazebo
 from grader.workspace.graph.code_ends import list_frames
-from grader.workspace.graph.gazebo_topics import roots, name_system
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.frames import openings

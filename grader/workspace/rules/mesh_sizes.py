@@ -160,7 +160,9 @@ def _is_off(length: float, right: float, least: float, most: float) -> bool:
 
 def _of_primitives(link: Link) -> _Reference | None:
     """Return the length of the shapes of a link's collision that are no meshes."""
-    length = max((_measure_length(collision.geometry) for collision in link.collisions), default=0.0)
+    length = max(
+        (_measure_length(collision.geometry) for collision in link.collisions), default=0.0
+    )
     return _Reference(length, "its collision") if length else None
 
 

@@ -8,7 +8,7 @@ from grader.base.source import Location
 from grader.ros.known.shared_names import shared_names
 from grader.workspace.graph.bridge_rows import BRIDGE, bridge_rows
 from grader.workspace.graph.code_ends import End
-from grader.workspace.graph.graph import Graph, make_graph, grouped
+from grader.workspace.graph.graph import Graph, grouped, make_graph
 from grader.workspace.graph.unread_ends import (
     Sought,
     is_all_read,

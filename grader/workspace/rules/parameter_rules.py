@@ -15,8 +15,8 @@ from grader.base.text import enumerated, quoted
 from grader.ros.known.parameter_rows import (
     COVERED,
     ParameterRow,
-    node_rows,
     find_rows,
+    node_rows,
 )
 from grader.ros.known.releases import RELEASES, Release, other_name
 from grader.ros.launch.launch_model import ParameterValue

@@ -24,7 +24,7 @@ from grader.ros.config.yaml_values import (
     values_in,
 )
 from grader.ros.known.package_rows import package_row, plugin_classes, usual_names
-from grader.ros.known.parameter_rows import row_for, find_rows
+from grader.ros.known.parameter_rows import find_rows, row_for
 from grader.ros.known.releases import RELEASES, Release, releases_with
 from grader.ros.launch.launch_model import FileText, ParameterValue, StartedNode
 from grader.ros.nodes.node_facts import NodeFacts

@@ -12,10 +12,10 @@ from grader.base.text import enumerated, quoted
 from grader.ros.installation.manifest_conditions import evaluate_condition
 from grader.ros.known.package_rows import package_row
 from grader.ros.known.released import (
+    find_releases,
     is_released,
     released_date,
     released_packages,
-    find_releases,
     rosdep_keys,
 )
 from grader.ros.known.releases import other_name

@@ -8,7 +8,7 @@ from math import hypot
 
 from grader.base.text import quoted
 from grader.base.transforms import minus, turn_between
-from grader.workspace.graph.graph import make_graph, grouped
+from grader.workspace.graph.graph import grouped, make_graph
 from grader.workspace.graph.transform_edges import Edge, is_zero_rotation
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning

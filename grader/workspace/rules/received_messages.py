@@ -12,7 +12,7 @@ from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.package_tables import colour_encodings
 from grader.ros.nodes.node_facts import EndpointKind, ImageEncoding
 from grader.workspace.graph.code_ends import End
-from grader.workspace.graph.graph import make_graph, grouped
+from grader.workspace.graph.graph import grouped, make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,

@@ -76,7 +76,9 @@ def _unread_sections(
     for node in nodes:
         key = key_of_program_name(workspace, node, keys)
         full = node.full_name(node.node_name or "")
-        names = elsewhere if any(is_section_key(section_key, full) for section_key in keys) else read
+        names = (
+            elsewhere if any(is_section_key(section_key, full) for section_key in keys) else read
+        )
         if key is not None and None not in names and key.rpartition("/")[2] not in names:
             unread.append((node, key))
     for node, key in unread:

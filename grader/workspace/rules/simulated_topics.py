@@ -10,7 +10,7 @@ from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
 from grader.workspace.graph.bridge_rows import BRIDGE, BridgeRow, bridge_rows
-from grader.workspace.graph.gazebo_topics import roots, name_system
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.bridges import has_unread_topics

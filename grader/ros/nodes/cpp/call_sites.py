@@ -11,7 +11,7 @@ from grader.ros.cpp.syntax import (
     CppNode,
     CppNodes,
 )
-from grader.ros.cpp.unit import CppUnit, list_arguments, called_name
+from grader.ros.cpp.unit import CppUnit, called_name, list_arguments
 from grader.ros.python.budget import Budget
 
 _MAX_SITES = 20  # of one function

@@ -16,9 +16,9 @@ from grader.ros.cpp.syntax import (
 )
 from grader.ros.cpp.unit import (
     CppUnit,
-    list_arguments,
     called_name,
     is_conditional,
+    list_arguments,
 )
 from grader.ros.nodes.node_facts import (
     CodeFault,

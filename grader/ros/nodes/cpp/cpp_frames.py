@@ -12,7 +12,7 @@ from grader.ros.cpp.syntax import (
     CppNode,
     CppNodes,
 )
-from grader.ros.cpp.unit import CppUnit, list_arguments, called_name
+from grader.ros.cpp.unit import CppUnit, called_name, list_arguments
 from grader.ros.nodes.cpp.rclcpp_calls import read_name
 from grader.ros.nodes.node_facts import FrameUse, NodeFrame, NodeTransform
 from grader.ros.nodes.transform_poses import pose_set

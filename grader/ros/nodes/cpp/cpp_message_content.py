@@ -18,7 +18,7 @@ from grader.ros.cpp.syntax import (
     CppNode,
     CppNodes,
 )
-from grader.ros.cpp.unit import CppUnit, list_arguments, called_name, is_conditional
+from grader.ros.cpp.unit import CppUnit, called_name, is_conditional, list_arguments
 from grader.ros.known.package_tables import colour_encodings
 from grader.ros.nodes.cpp.rclcpp_calls import message_type
 from grader.ros.nodes.node_facts import ImageEncoding, SynchronisedType

@@ -28,9 +28,9 @@ from grader.ros.cpp.syntax import (
     CppNodes,
 )
 from grader.ros.cpp.unit import (
-    list_arguments,
     called_name,
     is_conditional,
+    list_arguments,
 )
 from grader.ros.installation.installation import Installation
 from grader.ros.known.package_tables import cpp_table
@@ -47,10 +47,10 @@ from grader.ros.nodes.cpp.rclcpp_calls import (
     DECLARES,
     INTERFACES_OF_ACTION,
     METHODS,
-    read_endpoint,
     facts_of_method,
     filter_subscription,
     message_type,
+    read_endpoint,
 )
 from grader.ros.nodes.node_facts import (
     CodeFault,

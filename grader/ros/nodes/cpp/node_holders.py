@@ -12,8 +12,8 @@ from typing import Literal, NamedTuple
 from grader.ros.cpp.declarations import (
     CppFunction,
     CppVariable,
-    find_declaration,
     declared_in,
+    find_declaration,
     is_argument,
     name_in,
     plain,
@@ -23,7 +23,7 @@ from grader.ros.cpp.syntax import (
     CppNode,
     CppNodes,
 )
-from grader.ros.cpp.unit import CppUnit, list_arguments, called_name, template_arguments
+from grader.ros.cpp.unit import CppUnit, called_name, list_arguments, template_arguments
 from grader.ros.known.package_tables import cpp_table
 from grader.ros.python.budget import Budget
 
@@ -202,7 +202,9 @@ class NodeHolders:
         declaration = find_declaration(name)
         assert declaration is not None
         kind, is_parameter = declaration.child("type"), declaration.kind in _PARAMETERS
-        is_node = kind is not None and self.is_node_type(kind.text, self._unit.list_scopes(function))
+        is_node = kind is not None and self.is_node_type(
+            kind.text, self._unit.list_scopes(function)
+        )
         if is_parameter:
             is_given = function.is_template
         else:

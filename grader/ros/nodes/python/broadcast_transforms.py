@@ -94,7 +94,7 @@ def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> 
         return None
     given = {f for f in _fields_given(method, made) if f.startswith("transform")}
     if made is item or given:
-        return pose_set(given, partial(_value_made, method, made), method.evaluate_node)
+        return pose_set(given, partial(_value_made, method, made), method.value_of)
     name = dotted(item) if item is not None else ""
     around = method.of_class if name.startswith("self.") else method.node
     targets: set[str] = set()
@@ -109,7 +109,7 @@ def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> 
         targets.update(map(dotted, set_here))
     start = f"{name}.transform"
     moved = {each.removeprefix(f"{name}.") for each in targets if each.startswith(start)}
-    return pose_set(moved, partial(_value_set, method, call, name), method.evaluate_node)
+    return pose_set(moved, partial(_value_set, method, call, name), method.value_of)
 
 
 def _names_set(

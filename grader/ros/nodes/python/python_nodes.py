@@ -70,8 +70,8 @@ from grader.ros.python.parse import (
     Code,
     every_node,
     location_in,
-    own_nodes,
     make_position,
+    own_nodes,
 )
 from grader.ros.python.python_slips import python_slips
 from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknown, Value
@@ -309,7 +309,9 @@ def program_slips(package: Package) -> Iterator[Slip]:
     yield from slips.values()
 
 
-def _find_slips(package: Package, program: NodeProgram, searched: _Searched) -> Sequence[Slip] | None:
+def _find_slips(
+    package: Package, program: NodeProgram, searched: _Searched
+) -> Sequence[Slip] | None:
     """Return the slips of a program; None where too many programs are in a file to search each."""
     data = package.tree.read(program.path, _MAX_SEARCHED)
     if not package.budget.take_of_whole(len(data or b"") // _BYTES_A_PART):
