@@ -133,7 +133,7 @@ class Inspection:
         for robot in self.robots:
             if robot.reading.source.path == path:
                 return robot.reading.source
-        return self.find_source(path) if self.source_of is not None else None
+        return self.source_of(path) if self.source_of is not None else None
 
 
 def main_root(robot: Configuration) -> str | None:
