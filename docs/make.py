@@ -307,7 +307,9 @@ def row_of_rule(rule: Rule) -> dict[str, Any]:
     defaults = Rule._field_defaults
     row = {key: value for key, value in rule._asdict().items() if value != defaults.get(key)}
     del row["name"]
-    row |= {"kind": rule.kind.code, "doubtful": rule.doubtful.code}
+    row["kind"] = rule.kind.code
+    if rule.doubtful_kind is not None:
+        row["doubtful_kind"] = rule.doubtful_kind.code
     if rule.symptoms:
         row["symptoms"] = [symptom._asdict() for symptom in rule.symptoms]
     return row

@@ -107,7 +107,6 @@ _NOTE_LEFT = Rule(
     "note-left",
     "machine",
     ONE_MACHINE,
-    ONE_MACHINE,
     "No launch file has a note of its author.",
     why="A reader does not know whether the file is finished.",
     wrong="Node(package='turtlesim', executable='turtlesim_node', name='FIXME'),",

@@ -1,6 +1,7 @@
 """Hints of names that do not agree: the edit is made where the mistake is, in every kind of file."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 
 import pytest
@@ -190,6 +191,23 @@ def test_a_remapping_that_is_written_backward_is_exchanged() -> None:
     edits = hinted(report, wrong, "edit").edits
     assert {edit.path for edit in edits} == {path}
     assert applied(text.replace(*_BACKWARD).encode(), edits).decode() == text
+
+
+@pytest.mark.slow
+def test_no_edit_disconnects_what_it_compares() -> None:
+    """Another type of a topic stays: a remapping that is exchanged would make the controller deaf."""
+    correct = reference(RUBRICS["diffdrive"])
+    path = next(it for it in correct.whole_tree.files if it.endswith("drive_circle.py"))
+    text = correct.whole_tree.files[path].read(1 << 20).decode()
+    text = text.replace("TwistStamped", "Twist").replace(".twist.", ".")
+    text = text.replace("        command.header.stamp = self.get_clock().now().to_msg()\n", "")
+    assert correct.reopen is not None
+    wrong = correct.reopen(overlaid(correct.whole_tree, {path: text.encode()}))
+    criteria = [it for it in RUBRICS["diffdrive"].criteria if it.id == "topics-connected"]
+    only_topics = replace(RUBRICS["diffdrive"], criteria=tuple(criteria))
+    report = grade(only_topics, wrong)
+    assert report.score == 0
+    assert hinted(report, wrong, "edit").edits == ()
 
 
 @pytest.mark.slow

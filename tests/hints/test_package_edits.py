@@ -52,6 +52,8 @@ UNDONE = {
         "package_name = 'my_robot'",
         "package_name = 'my_robto'",
     ),
+    "list missing around the file of an entry": (SETUP, "['package.xml']", "'package.xml'"),
+    "at in place of @": (MANIFEST, "course@example.org", "course at example.org"),
     "import os missing": (SETUP, "import os\n", ""),
     "import misspelt": (SETUP, "import os\n", "import oss\n"),
     "variable misspelt": (SETUP, "package_name = ", "package_nane = "),
@@ -117,6 +119,11 @@ UNDONE = {
 }
 # The same, where another correction is as good.
 CORRECTED = {
+    "slash missing before a folder": (
+        SETUP,
+        "os.path.join('share', package_name, 'launch')",
+        "'share/' + package_name + 'launch'",
+    ),
     "no imports": (SETUP, "import os\nfrom glob import glob\n", ""),
     "share folder of another package": (
         SETUP,
@@ -228,6 +235,21 @@ def test_a_mistake_is_corrected(mistake: str) -> None:
     broken = _with_mistake(*CORRECTED[mistake])
     assert _passed(broken) < _ALL
     assert _corrected(broken) is not None
+
+
+def test_actions_without_brackets_get_them() -> None:
+    """Each action is then an argument of its own, of which a description takes one."""
+    data = content(_REFERENCE, LAUNCH) or b""
+    text = (
+        data.decode()
+        .replace("LaunchDescription([", "LaunchDescription(")
+        .replace("    ])", "    )")
+    )
+    broken = with_files(_REFERENCE, {LAUNCH: text.encode()})
+    assert _passed(broken) < _passed(_REFERENCE)
+    found = [it for it in _proposals(broken) if "brackets" in it.cause]
+    corrected = [with_files(broken, edited_files(broken, it.edits) or {}) for it in found]
+    assert _passed(_REFERENCE) in map(_passed, corrected)
 
 
 @pytest.mark.parametrize("mistake", MOVED)

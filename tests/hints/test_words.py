@@ -61,6 +61,6 @@ def test_an_edit_that_is_as_good_is_named() -> None:
     line = source.text[:start].count("\n") + 1
     text = f"Check {RVIZ}, line {line}: one"
     shown = message(hint, "cause", submission, ())
-    assert shown == f"{text}; as good is: check {RVIZ}, line 1: another."
+    assert shown == f"{text}; or check {RVIZ}, line 1: another."
     same = hint._replace(equal=hint.proposal)
     assert message(same, "cause", submission, ()) == f"{text}."

@@ -98,8 +98,8 @@ _ROBOT = """\
   </gazebo>
   <ros2_control name="system" type="system">
     <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
-    <joint name="left_wheel_joint"><command_interface name="velocity"/></joint>
-    <joint name="right_wheel_joint"><command_interface name="velocity"/></joint>
+    <joint name="left_wheel_joint"><command_interface name="velocity"/><state_interface name="position"/></joint>
+    <joint name="right_wheel_joint"><command_interface name="velocity"/><state_interface name="position"/></joint>
     <joint name="lift">
       <command_interface name="position">
         <param name="min">-1</param>

@@ -200,7 +200,7 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
                 _URDF,
                 """
     <joint name="right_wheel_joint">
-      <command_interface name="velocity"/>
+      <command_interface name="velocity"/> <state_interface name="position"/>
       <state_interface name="velocity"/>
     </joint>""",
                 "",

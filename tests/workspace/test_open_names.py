@@ -69,7 +69,7 @@ _ROBOT = """\
 """
 _CONTROL = """\
 <ros2_control name="s" type="system"><hardware><plugin>mock_components/GenericSystem</plugin></hardware>
-<joint name="shoulder">INTERFACES</joint></ros2_control>
+<joint name="shoulder">INTERFACES<state_interface name="position"/></joint></ros2_control>
 """
 _MOVER = """\
 import rclpy

@@ -61,6 +61,9 @@ class MutantEdit(NamedTuple):
     new: str
 
 
+MutantEdits = Iterator[MutantEdit]
+
+
 def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator[Mutant]:
     """Yield every mutant of a URDF or xacro once.
 
@@ -92,7 +95,7 @@ def _names_by_tag(elements: Iterable[Element]) -> dict[str, list[str]]:
     return names
 
 
-def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
+def _changes(text: str, hidden: Collection[str]) -> MutantEdits:
     places = list(_places(text))
     names = _names_by_tag(element for element, *_ in places)
     for element, label, start in places:
@@ -155,7 +158,7 @@ def _attribute_changes(
     label: str,
     attribute: Attribute,
     names: Mapping[str, Sequence[str]],
-) -> Iterator[MutantEdit]:
+) -> MutantEdits:
     name, span = attribute.name, attribute.value
     place = f"{label} {name}"
     yield MutantEdit("attribute deleted", place, attribute.start - 1, attribute.end, "")
@@ -174,7 +177,7 @@ def _attribute_changes(
         yield from _value_changes(text, label, span, name)
 
 
-def _value_changes(text: str, label: str, span: tuple[int, int], name: str) -> Iterator[MutantEdit]:
+def _value_changes(text: str, label: str, span: tuple[int, int], name: str) -> MutantEdits:
     """Yield changes of a value: of each number in it, else of the text."""
     start, end = span
     label = f"{label} {name}".rstrip()
@@ -269,7 +272,7 @@ def package_mutants(
         yield from _as_mutants(source.text, path, chain(changes, further(source, label)))
 
 
-def _file_changes(source: Source, label: str, file: str) -> Iterator[MutantEdit]:
+def _file_changes(source: Source, label: str, file: str) -> MutantEdits:
     """Yield the changes of a file that builds or starts something, by its format."""
     if source.path.endswith(".py"):
         yield from _python_changes(PythonFile(source), label, is_setup=file == SETUP)
@@ -284,7 +287,7 @@ def _file_changes(source: Source, label: str, file: str) -> Iterator[MutantEdit]
             )
 
 
-def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[MutantEdit]:
+def _rviz(source: Source, label: str, links: Iterable[str]) -> MutantEdits:
     """Yield changes of the fixed frame, and of each display.
 
     A display is disabled, or its class or topic is misspelt.
@@ -299,7 +302,7 @@ def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[MutantEd
         yield from _display_changes(display, label)
 
 
-def _display_changes(display: YamlNode, label: str) -> Iterator[MutantEdit]:
+def _display_changes(display: YamlNode, label: str) -> MutantEdits:
     title, enabled = display.get("Name") or display.get("Class"), display.get("Enabled")
     place = f"{label} {title.text if title else ''}".rstrip()
     if enabled is not None and enabled.text == "true":
@@ -312,7 +315,7 @@ def _display_changes(display: YamlNode, label: str) -> Iterator[MutantEdit]:
             )
 
 
-def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator[MutantEdit]:
+def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> MutantEdits:
     """Yield the changes of a Python file.
 
     An entry of data_files, an action or an import is deleted, a string is misspelt.
@@ -333,7 +336,7 @@ def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator
     yield from _string_changes(file, label)
 
 
-def _string_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+def _string_changes(file: PythonFile, label: str) -> MutantEdits:
     """Yield that a string is misspelt, but none for people."""
     ignored = [*_for_people(file)]
     for text, start, end in file.literals:

@@ -7,7 +7,13 @@ import re
 from collections.abc import Iterable, Iterator
 
 from grader.base.source import Edit, Source
-from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt, mutants
+from grader.lab.authoring.mutants import (
+    MAX_LABEL,
+    MutantEdit,
+    MutantEdits,
+    misspelt,
+    mutants,
+)
 from grader.lab.submission.submission import Submission
 from grader.ros.config.yaml_nodes import YamlNode, yaml_root
 from grader.ros.package.package import CMAKE, MANIFEST
@@ -44,7 +50,7 @@ def compared_names(
 
 def name_changes(
     source: Source, label: str, names: Iterable[tuple[Fact, Edit]], families: Iterable[Family]
-) -> Iterator[MutantEdit]:
+) -> MutantEdits:
     """Yield the changes of a file of a package.
 
     Those of its format come first, then those of the names in it that are compared.
@@ -66,9 +72,7 @@ def name_changes(
     yield from _name_edits(source, label, names)
 
 
-def _name_edits(
-    source: Source, label: str, names: Iterable[tuple[Fact, Edit]]
-) -> Iterator[MutantEdit]:
+def _name_edits(source: Source, label: str, names: Iterable[tuple[Fact, Edit]]) -> MutantEdits:
     """Yield the changes of the compared names that are in a file."""
     for fact, edit in names:
         if edit.path == source.path:
@@ -79,7 +83,7 @@ def _name_edits(
             )
 
 
-def _world_changes(source: Source, label: str) -> Iterator[MutantEdit]:
+def _world_changes(source: Source, label: str) -> MutantEdits:
     """Yield that a system or sensor of a world is missing, or another one."""
     for mutant in mutants(source.text):
         place = mutant.id.partition(": ")[2]
@@ -89,7 +93,7 @@ def _world_changes(source: Source, label: str) -> Iterator[MutantEdit]:
             yield MutantEdit(mutation, f"{label} {place}", mutant.start, mutant.end, mutant.new)
 
 
-def _bridge_changes(source: Source, label: str, root: YamlNode) -> Iterator[MutantEdit]:
+def _bridge_changes(source: Source, label: str, root: YamlNode) -> MutantEdits:
     """Yield that a row of a bridge is missing, or has the other direction."""
     rows = [row for row in root.items if isinstance(row.value, dict) and row.value]
     starts = [_start_of_item(source, row) for row in rows]
@@ -116,16 +120,14 @@ def _start_of_item(source: Source, row: YamlNode) -> int | None:
     return dash if dash >= 0 and not source.text[dash + 1 : first].strip() else None
 
 
-def _yaml_changes(source: Source, label: str) -> Iterator[MutantEdit]:
+def _yaml_changes(source: Source, label: str) -> MutantEdits:
     root = yaml_root(source)
     if root is not None:
         yield from _bridge_changes(source, label, root)
         yield from _node_changes(source, f"{label} ", root, set())
 
 
-def _node_changes(
-    source: Source, label: str, node: YamlNode, seen: set[YamlNode]
-) -> Iterator[MutantEdit]:
+def _node_changes(source: Source, label: str, node: YamlNode, seen: set[YamlNode]) -> MutantEdits:
     """Yield that each value is another one, and each key of a table misspelt; of an anchor once."""
     if node in seen:
         return
@@ -144,7 +146,7 @@ def _node_changes(
         yield from _node_changes(source, f"{label}{key}.", inner, seen)
 
 
-def _scalar_changes(source: Source, label: str, node: YamlNode) -> Iterator[MutantEdit]:
+def _scalar_changes(source: Source, label: str, node: YamlNode) -> MutantEdits:
     """Yield the change of a text.
 
     A truth value is reversed, a number is ten times as large, a word is misspelt.

@@ -6,7 +6,12 @@ from collections.abc import Collection, Iterator
 from itertools import pairwise
 
 from grader.base.source import Location, Source
-from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt
+from grader.lab.authoring.mutants import (
+    MAX_LABEL,
+    MutantEdit,
+    MutantEdits,
+    misspelt,
+)
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import CMAKE
 from grader.ros.python.python_file import PythonFile
@@ -38,7 +43,7 @@ _ANSWERING = ("create_service", "ActionServer")
 
 def node_changes(
     submission: Submission, source: Source, label: str, families: Collection[Family]
-) -> Iterator[MutantEdit]:
+) -> MutantEdits:
     """Yield the changes of a file that a criterion about interfaces, or about code, should find."""
     if "interfaces" in families:
         yield from _interface_changes(source, label)
@@ -60,7 +65,7 @@ def node_changes(
         yield from _code_changes(PythonFile(source), label)
 
 
-def type_changes(source: Source, label: str, topics: Collection[str]) -> Iterator[MutantEdit]:
+def type_changes(source: Source, label: str, topics: Collection[str]) -> MutantEdits:
     """Yield that a node in Python opens one of these topics with another type that it imports."""
     if not source.path.endswith(".py") or "rclpy" not in source.text:
         return
@@ -80,7 +85,7 @@ def type_changes(source: Source, label: str, topics: Collection[str]) -> Iterato
                     yield MutantEdit("type of a topic changed", place, *file.span(kind), other)
 
 
-def _cpp_changes(source: Source, label: str) -> Iterator[MutantEdit]:
+def _cpp_changes(source: Source, label: str) -> MutantEdits:
     """Yield the changes of a node in C++.
 
     rclcpp is not initialised, nothing spins, a parameter is not declared, or a callback returns
@@ -92,7 +97,7 @@ def _cpp_changes(source: Source, label: str) -> Iterator[MutantEdit]:
             yield MutantEdit(mutation, place, *match.span(), "")
 
 
-def _interface_changes(source: Source, label: str) -> Iterator[MutantEdit]:
+def _interface_changes(source: Source, label: str) -> MutantEdits:
     """Yield the changes of an interface.
 
     Each field is misspelt or of another type, each separator is removed, and each interface is
@@ -112,7 +117,7 @@ def _interface_changes(source: Source, label: str) -> Iterator[MutantEdit]:
         yield MutantEdit("separator removed", label, *match.span(), "")
 
 
-def _misspelt_at(source: Source, label: str, at: Location, name: str) -> Iterator[MutantEdit]:
+def _misspelt_at(source: Source, label: str, at: Location, name: str) -> MutantEdits:
     """Yield that a name is misspelt where it is used."""
     if at.path != source.path:
         return
@@ -122,7 +127,7 @@ def _misspelt_at(source: Source, label: str, at: Location, name: str) -> Iterato
         yield MutantEdit("name misspelt", f"{label} {name}", start, end, misspelt(name))
 
 
-def _code_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+def _code_changes(file: PythonFile, label: str) -> MutantEdits:
     """Yield that nothing spins, a callback is called, or a response is not returned."""
     answering: set[str] = set()
     for node in file.nodes:
@@ -148,9 +153,7 @@ def _code_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
     yield from _order_changes(file, label)
 
 
-def _return_changes(
-    file: PythonFile, label: str, answering: Collection[str]
-) -> Iterator[MutantEdit]:
+def _return_changes(file: PythonFile, label: str, answering: Collection[str]) -> MutantEdits:
     """Yield that one of these callbacks does not return its response."""
     for node in file.nodes:
         if isinstance(node, ast.FunctionDef) and node.name in answering:
@@ -161,7 +164,7 @@ def _return_changes(
                 yield MutantEdit("response replaced", place, *file.span(last), "return True")
 
 
-def _parameter_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+def _parameter_changes(file: PythonFile, label: str) -> MutantEdits:
     """Yield that a callback lacks its last parameter, or has one more.
 
     A callback of a subscription may have one more.
@@ -197,7 +200,7 @@ def _parameter_places(
         yield "callback parameter removed", file.span(names[-2])[1], end, ""
 
 
-def _instance_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+def _instance_changes(file: PythonFile, label: str) -> MutantEdits:
     """Yield that a message or a node is replaced by its class."""
     made: dict[str, str] = {}  # the classes of variables
     for node in file.nodes:
@@ -216,7 +219,7 @@ def _instance_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
                     yield MutantEdit(f"{mutation} of a class", place, *file.span(given), kind)
 
 
-def _order_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+def _order_changes(file: PythonFile, label: str) -> MutantEdits:
     """Yield that a node declares or opens something before its base class is initialised."""
     for node in file.nodes:
         if not isinstance(node, ast.FunctionDef) or node.name != "__init__":
@@ -230,7 +233,7 @@ def _order_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
                 yield MutantEdit("constructor after its use", place, start, end, swapped)
 
 
-def _call_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+def _call_changes(file: PythonFile, label: str) -> MutantEdits:
     """Yield the changes of calls of rclpy.
 
     A statement is missing, a quality of service is another one, or a call of a service waits.
@@ -255,7 +258,7 @@ def _removed(file: PythonFile, label: str, mutation: str, node: ast.Expr) -> Mut
 
 def _requalified(
     file: PythonFile, label: str, call: ast.Call, quality: ast.expr, name: str
-) -> Iterator[MutantEdit]:
+) -> MutantEdits:
     """Yield that a publisher is best effort, a subscription to one reliable, or a depth a text."""
     is_depth, new = isinstance(quality, ast.Constant), ""
     if name == "create_publisher" and is_depth and _BEST_EFFORT in file.text:

@@ -294,7 +294,12 @@ def _judge(tree: TreeEntry, wanted: _Wanted, where: str) -> Outcome:
     best = wanted.nearest(search, entries)
     wrong = wanted.wrong(search, best)
     if not wrong:
-        return passed(f"there is {shown}{' with the expected values' if wanted.is_valued else ''}")
+        rest = " with the expected values" if wanted.is_valued else ""
+        outcome = passed(f"there is {shown}{rest}")
+        if "@type" in wanted.values and best.is_nameless_sensor:
+            message = f"{shown} has no name, so Gazebo refuses the robot"
+            outcome = failed(message, best.place)
+        return outcome
     if wanted.identity in wrong and (len(entries) > 1 or wanted.identity == "@name"):
         return _no_identity(tree, search, entries, wanted)
     faults = [_fault_text(key, _inside(search, best, key), wanted.values[key]) for key in wrong]

@@ -52,6 +52,7 @@ ABOUT = {
 _UNKNOWN_FILES = "cannot determine statically which files it names"
 _ON_ONE_MACHINE = "the launch file looks for files at paths that exist on one machine only"
 _NOT_INSTALLED = "the launch file looks for files where a build does not install them"
+_Choices = Sequence[Sequence[str]]  # of nodes, each by its possible names
 
 
 def launch_found(package: Package, *, name: str) -> Outcome:
@@ -157,7 +158,7 @@ def node_runs(
 def _fail_certainly(
     package: Package,
     launch: "Launch",
-    choices: Sequence[Sequence[str]],
+    choices: _Choices,
     faults: Sequence[Fault],
 ) -> Outcome | None:
     """Return the failure of the first certain fault; raise that of a program that ends at once."""
@@ -195,6 +196,9 @@ def _add_components(submission: Submission, launch: "Launch", names: Sequence[st
     """Return names of nodes with those of the components that are the nodes of these programs."""
     code = submission.workspace.code
     all_names = [*names]
+    for node in launch.nodes:
+        if node.program_name in names:
+            all_names.append(node.name)
     for name in names:
         package, _, executable = name.rpartition("/")
         own_code = code.by_package.get(package)
@@ -206,19 +210,17 @@ def _add_components(submission: Submission, launch: "Launch", names: Sequence[st
     return [*dict.fromkeys(all_names)]
 
 
-def _missing_nodes(launch: "Launch", choices: Sequence[Sequence[str]]) -> list[Sequence[str]]:
+def _missing_nodes(launch: "Launch", choices: _Choices) -> list[Sequence[str]]:
     """Return the nodes that are not certainly started."""
     started = {node.name for node in launch.nodes if node.when}
     return [choice for choice in choices if started.isdisjoint(choice)]
 
 
-def _listed(missing: Sequence[Sequence[str]]) -> str:
+def _listed(missing: _Choices) -> str:
     return ", ".join(" or ".join(choice) for choice in missing)
 
 
-def _fail_missing(
-    launch: "Launch", missing: Sequence[Sequence[str]], nodes: Sequence[str]
-) -> Outcome:
+def _fail_missing(launch: "Launch", missing: _Choices, nodes: Sequence[str]) -> Outcome:
     """Return the failure of a launch file that certainly does not start some nodes."""
     started = sorted({node.name for node in launch.nodes if node.when})
     reason, at = _why_missing(launch, {node for choice in missing for node in choice})
@@ -245,7 +247,7 @@ def _stop_at_files(
 
 def _check_decided(
     launch: "Launch",
-    missing: Sequence[Sequence[str]],
+    missing: _Choices,
     faults: Sequence[Fault],
     places: Sequence[FilePlace],
 ) -> None:
@@ -378,9 +380,7 @@ def _check_starts(launch: "Launch") -> None:
         raise NotDecided(f"{what}: line {at.line}: {message}", what)
 
 
-def _faulty_program(
-    package: Package, launch: "Launch", choices: Sequence[Sequence[str]]
-) -> MissingElement | None:
+def _faulty_program(package: Package, launch: "Launch", choices: _Choices) -> MissingElement | None:
     """Return the fault of a wanted node that certainly ends at once.
 
     setup.py names no function for its program.
@@ -410,7 +410,7 @@ def _faulty_program(
     return None
 
 
-def _may_start(launch: "Launch", missing: Sequence[Sequence[str]]) -> bool:
+def _may_start(launch: "Launch", missing: _Choices) -> bool:
     """Return whether each of the missing nodes may be started by what is not known."""
     uncertain = {node.name for node in launch.nodes if node.when is None}
     return bool(launch.unknown) or not any(uncertain.isdisjoint(choice) for choice in missing)

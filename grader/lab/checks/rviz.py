@@ -8,6 +8,7 @@ from grader.base.names import did_you_mean
 from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import About
+from grader.lab.checks.launching import with_components
 from grader.lab.checks.outcome import Outcome, Status, failed, judged, passed
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
@@ -318,7 +319,7 @@ class _Names(NamedTuple):
         for node in opened.nodes:
             if not node.when:
                 continue
-            if node.executable == "robot_state_publisher":
+            if node.is_state_publisher:
                 publishers.append(node)
             elif node.executable in ("joint_state_publisher", "joint_state_publisher_gui"):
                 joints.append(node)
@@ -406,7 +407,7 @@ def _judge_prefix(model: "Display", opened: "Launch | None") -> _Verdict:
 
 def _read_launch(package: Package, launch: str) -> "Launch | None":
     path = package.launch_file(launch) if launch else None
-    return package.launch(path) if path is not None else None
+    return with_components(package.launch(path)) if path is not None else None
 
 
 def _rviz_path(package: Package, name: str, opened: "Launch | None") -> str:

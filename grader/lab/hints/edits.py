@@ -1,6 +1,6 @@
 """Edits that hints propose, and what they gain."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from os.path import commonprefix
 from typing import NamedTuple
@@ -44,6 +44,9 @@ class Proposal(NamedTuple):
     def size(self) -> int:
         """How much text changes: the number of edits counts more than their length."""
         return sum(100 + _change_size(edit.old, edit.new) for edit in self.edits)
+
+
+Proposals = Iterator[Proposal]
 
 
 class FoundHint(NamedTuple):

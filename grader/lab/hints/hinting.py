@@ -273,7 +273,7 @@ def message(
     if hint.equal is not None:
         other = _clause(FoundHint(hint.equal, {}), level, submission)
         if other != text:
-            text = f"{text}; as good is: {other}"
+            text = f"{text}; or {other}"
     if earlier:
         edits = "edits" if len(earlier) > 1 else "edit"
         return f"After the {edits} for {enumerated(earlier, MAX_IN_HINT)}, {text}."

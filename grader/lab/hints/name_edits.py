@@ -4,7 +4,7 @@ Names are edited where they are used or where they are defined.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import chain, combinations
 from typing import Any, NamedTuple
 
@@ -12,7 +12,7 @@ from grader.base.errors import MissingElement, NotDecided
 from grader.base.problems import Fix
 from grader.base.source import Source
 from grader.lab.checks.parameters import find_value, measured
-from grader.lab.hints.edits import Proposal
+from grader.lab.hints.edits import Proposal, Proposals
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
 from grader.workspace.rules.name_fixes import NameFixes
@@ -28,9 +28,7 @@ _FROM_TO = re.compile(
 )
 
 
-def name_proposals(
-    submission: Submission, family: Family, reference: Package | None
-) -> Iterator[Proposal]:
+def name_proposals(submission: Submission, family: Family, reference: Package | None) -> Proposals:
     """Yield the edits with which the names of a family agree.
 
     This is one for all of them, else one for each.
@@ -97,7 +95,7 @@ class _Spelling(NamedTuple):
         return len(re.findall(self.pattern.format(re.escape(name)), text))
 
 
-def _ways(fixes: Sequence[Fix], spelling: _Spelling) -> Iterator[Proposal]:
+def _ways(fixes: Sequence[Fix], spelling: _Spelling) -> Proposals:
     """Yield the edits of the fixes of a name: none into the name that fewer places write."""
     for fix in fixes:
         first = fix.edits[0]
@@ -109,7 +107,7 @@ def _ways(fixes: Sequence[Fix], spelling: _Spelling) -> Iterator[Proposal]:
             yield Proposal(fix.edits, cause, rank=1)
 
 
-def _exchanged_remappings(source: Source) -> Iterator[Proposal]:
+def _exchanged_remappings(source: Source) -> Proposals:
     """Yield the edits that exchange both names of a remapping in a launch file.
 
     It may be written backward.
@@ -123,7 +121,7 @@ def _exchanged_remappings(source: Source) -> Iterator[Proposal]:
         yield Proposal(edits, "the order of names in a remapping")
 
 
-def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterator[Proposal]:
+def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Proposals:
     """Yield the edit that gives a parameter the value that `parameter_is` asks for.
 
     There is one only where a value is written plainly.

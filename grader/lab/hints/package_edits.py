@@ -19,7 +19,7 @@ from grader.base.merge_conflicts import find_conflicts
 from grader.base.names import closest
 from grader.base.source import Edit, Edits, Source
 from grader.base.text import in_backticks
-from grader.lab.hints.edits import Proposal
+from grader.lab.hints.edits import Proposal, Proposals
 from grader.lab.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.ros.installation.places import HOME, PREFIX, WORKING_FOLDER
 from grader.ros.launch.launch_model import Launch, NamedFile
@@ -62,6 +62,9 @@ _SHARE_FUNCTION = "get_package_share_directory"
 _MAX_PATHS = 8  # that are wrong in one file
 _MAX_EDITS = 3  # of one path
 _MAX_FILES = 200
+_ADDRESS = re.compile(
+    r"\bemail\s*=\s*[\"'](?P<all>(?P<name>[\w.+-]+)(?:\s+at\s+|\s*[(\[]at[)\]]\s*)(?P<host>[\w.-]+))[\"']"
+)
 _LAUNCH = "the launch file"
 _DESCRIPTION = "LaunchDescription"
 _MAX_AROUND = 30  # lines that are indented together
@@ -73,7 +76,7 @@ def package_proposals(
     package: Package,
     reference: Package | None,
     wanted: Iterable[tuple[tuple[str, ...], Mapping[str, Any]]],
-) -> Iterator[Iterator[Proposal]]:
+) -> Iterator[Proposals]:
     """Yield edits of a package for checks, by the kinds of files.
 
     The kinds are what each check looks at, with its arguments.
@@ -90,7 +93,7 @@ def package_proposals(
         yield _best_of_kind(task, kind)
 
 
-def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
+def _best_of_kind(task: PackageTask, kind: str) -> Proposals:
     """Yield the best proposals for a kind of files, each edit once.
 
     A later one says better what changes.
@@ -103,7 +106,7 @@ def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     yield from in_order[:_MAX_PROPOSALS]
 
 
-def _proposals_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
+def _proposals_of_kind(task: PackageTask, kind: str) -> Proposals:
     """Yield edits of the file of a kind, and those that rename or create one.
 
     Without a kind, they are those of the package's name.
@@ -118,13 +121,19 @@ def _proposals_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     source = task.source(path)
     if source is not None and path is not None:
         for proposal in _proposals_of_file(task, kind, source, path, like):
-            if proposal.edits:
+            if proposal.edits and not any(map(_writes_address, proposal.edits)):
                 yield proposal
+
+
+def _writes_address(edit: Edit) -> bool:
+    """Return whether an edit writes an e-mail address of others: those of the reference's file."""
+    words = {*_WORD.findall(edit.old)}
+    return "@" in edit.new and not words.issuperset(_WORD.findall(edit.new))
 
 
 def _proposals_of_file(
     task: PackageTask, kind: str, source: Source, path: str, like: str | None
-) -> Iterator[Proposal]:
+) -> Proposals:
     """Yield the edits of a file.
 
     They are about its difference to the reference, its syntax, its names, its paths and its
@@ -146,6 +155,9 @@ def _proposals_of_file(
         yield from _undefined_names(file, what)
     elif ending == ending_of_like:
         yield from _other_values(source, wanted, what)
+    for address in _ADDRESS.finditer(source.text):
+        edit = source.edit(*address.span("all"), f"{address['name']}@{address['host']}")
+        yield change([edit], "an e-mail address without @", what)
     if kind == "launch":
         launch = task.launch(path, source)
         yield from _launch_paths(task, launch, source)
@@ -157,10 +169,12 @@ def _proposals_of_file(
     if is_python:  # these rarely find a mistake
         yield from _unquoted_names(file, what)
         yield from _missing_calls(file, what)
+        yield from _missing_brackets(file, what)
+        yield from _missing_slashes(file, what)
         yield from _indentations(file, what)
 
 
-def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
+def _respellings(source: Source, known: Iterable[str], what: str) -> Proposals:
     """Yield edits that replace a misspelt word everywhere, rare ones first.
 
     `known` are texts with words that are spelt as they should be; the file's other words may be the
@@ -197,7 +211,7 @@ def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Pr
 
 def _replace_words(
     source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str
-) -> Iterator[Proposal]:
+) -> Proposals:
     """Yield edits that write another word everywhere for what a pattern finds."""
     places: dict[str, list[re.Match[str]]] = {}
     for match in pattern.finditer(source.text):
@@ -219,7 +233,7 @@ def _slip(word: str, known: Iterable[str]) -> str | None:
     return guess if likeness >= _LIKENESS else None
 
 
-def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Iterator[Proposal]:
+def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Proposals:
     """Yield edits that undo one difference each between a file and its proper text.
 
     There are none unless they are few.
@@ -268,7 +282,7 @@ def _missing_in_words(file: PythonFile, offset: int, new: str) -> str:
     return f"a missing part of `{around}`" if around else "a missing line"
 
 
-def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+def _other_values(source: Source, wanted: str, what: str) -> Proposals:
     """Yield edits that give a key or an attribute a value of the reference.
 
     This is a key of YAML, or an attribute of XML.
@@ -298,7 +312,7 @@ def _key_around(source: Source, offset: int) -> str:
     return ""
 
 
-def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _undefined_names(file: PythonFile, what: str) -> Proposals:
     """Yield edits that import or correct names, and missing commas.
 
     The names are undefined, or not as they are used.
@@ -319,7 +333,7 @@ def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
             yield change([file.source.edit(end, end, ",")], "a missing comma", what)
 
 
-def _meant_names(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _meant_names(file: PythonFile, what: str) -> Proposals:
     """Yield edits that write the most similar names that have values for undefined ones."""
     names = [node for node in file.nodes if isinstance(node, ast.Name)]
     undefined = file.undefined - {*USUAL_NAMES}
@@ -334,7 +348,7 @@ def _meant_names(file: PythonFile, what: str) -> Iterator[Proposal]:
             yield change(edits, f"the spelling of `{word}`", what)
 
 
-def _other_imports(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _other_imports(file: PythonFile, what: str) -> Proposals:
     """Yield edits that import the function glob instead of the module, or the reverse."""
     for statement in file.imports:
         if [alias.name for alias in statement.names] == ["glob"]:
@@ -345,7 +359,7 @@ def _other_imports(file: PythonFile, what: str) -> Iterator[Proposal]:
             yield proposal._replace(rank=-1)
 
 
-def _unquoted_names(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _unquoted_names(file: PythonFile, what: str) -> Proposals:
     """Yield edits that write a name without the quotes around it."""
     constants = [node for node in file.nodes if isinstance(node, ast.Constant)]
     names = [node for node in constants if node.value in file.values]
@@ -354,7 +368,7 @@ def _unquoted_names(file: PythonFile, what: str) -> Iterator[Proposal]:
         yield change([file.replaced(node, str(node.value))], cause, what)
 
 
-def _missing_calls(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _missing_calls(file: PythonFile, what: str) -> Proposals:
     """Yield edits that call a method which is only named, such as infp.read."""
     inside: set[ast.expr] = set()  # of a call or of another attribute
     for node in file.nodes:
@@ -369,6 +383,29 @@ def _missing_calls(file: PythonFile, what: str) -> Iterator[Proposal]:
         yield change([edit], f"`{method.attr}` without ()", what)
 
 
+def _missing_brackets(file: PythonFile, what: str) -> Proposals:
+    """Yield edits that put brackets around actions, or around the file of an entry."""
+    groups = [call.args for call in file.calls(_DESCRIPTION) if len(call.args) > 1]
+    for item in _items(file):
+        if isinstance(item, ast.Tuple) and len(item.elts) > 1:
+            groups.append(item.elts[1:])
+    for group in groups[:_MAX_WORDS]:
+        start, end = file.span(group[0])[0], file.span(group[-1])[1]
+        edits = [file.source.edit(start, start, "["), file.source.edit(end, end, "]")]
+        if len(group) == 1:
+            edits = [file.source.edit(start, end, f"[{file.text[start:end]}]")]
+        yield change(edits, "missing brackets", what)
+
+
+def _missing_slashes(file: PythonFile, what: str) -> Proposals:
+    """Yield edits that separate a folder from the name that it is added to."""
+    for node in file.nodes:
+        match node:
+            case ast.BinOp(op=ast.Add(), right=ast.Constant(value=str(folder)) as right):
+                edit = file.replaced(right, repr(f"/{folder}"))
+                yield change([edit], f"`{folder}` without /", what)
+
+
 def _find_blank_line(lines: Sequence[str], first: int) -> int:
     """Return the index of the next blank line, or the number of lines."""
     at = first
@@ -377,7 +414,7 @@ def _find_blank_line(lines: Sequence[str], first: int) -> int:
     return at
 
 
-def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _indentations(file: PythonFile, what: str) -> Proposals:
     """Yield edits that indent lines as those around them, with which Python can read the file.
 
     These are the line at which Python stops and the one before it, each alone, and with those that
@@ -417,7 +454,7 @@ def _read_indent(line: str) -> str:
     return line[: len(line) - len(line.lstrip())]
 
 
-def _programs(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
+def _programs(task: PackageTask, launch: Launch, source: Source) -> Proposals:
     """Yield edits that start another program of a package.
 
     The program that a check names takes the place of another one, or the reverse.
@@ -446,7 +483,7 @@ def _programs(task: PackageTask, launch: Launch, source: Source) -> Iterator[Pro
                 yield change([edit], cause, _LAUNCH)._replace(rank=rank)
 
 
-def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
+def _setup_paths(task: PackageTask) -> Proposals:
     """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
     source, setup = task.source(SETUP), task.package.installation
     if source is None or setup is None or setup.is_cmake:
@@ -478,7 +515,7 @@ def _similar(path: str, known: Iterable[str]) -> list[str]:
     )
 
 
-def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
+def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Proposals:
     """Yield edits with which a launch file finds its files.
 
     That of all together comes first, then those of one path each.
@@ -615,7 +652,7 @@ def _without(source: Source, start: int, end: int) -> Edit:
     return source.edit(start, end, "")
 
 
-def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
+def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Proposals:
     """Yield edits that add missing entries: one, or all.
 
     These are what the file makes and does not use, or entries of the reference's list.
@@ -640,7 +677,7 @@ def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Iterator[
             yield from _adding(file, codes_to_add, what)
 
 
-def _adding(file: PythonFile, codes: Sequence[str], what: str) -> Iterator[Proposal]:
+def _adding(file: PythonFile, codes: Sequence[str], what: str) -> Proposals:
     edit = _add(file, codes)
     if edit is not None:
         names: set[str] = set()

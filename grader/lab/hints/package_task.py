@@ -2,12 +2,12 @@
 
 import posixpath
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from grader.base.names import closest
 from grader.base.source import Edit, Source
-from grader.lab.hints.edits import Proposal
+from grader.lab.hints.edits import Proposal, Proposals
 from grader.ros.installation.places import is_launch_file, is_launch_named
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import MANIFEST, SETUP, Package
@@ -112,7 +112,7 @@ def change(edits: Iterable[Edit], cause: str, what: str = "") -> Proposal:
     return Proposal(tuple(dict.fromkeys(edits)), f"{cause} in {what}" if what else cause)
 
 
-def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
+def file_proposals(task: PackageTask, kind: str) -> Proposals:
     """Yield edits that give a file the name that it has in the reference."""
     if task.reference is not None:
         wanted = [task.named(path) for path in task.reference.tree.files]
@@ -138,7 +138,7 @@ def _is_named(path: str, name: str, kind: str) -> bool:
     return posixpath.basename(path) == name or (kind == "launch" and is_launch_named(path, name))
 
 
-def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
+def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Proposals:
     """Yield edits that give one of these files a name: the one with the most similar name first.
 
     Xacro stays xacro.
@@ -157,7 +157,7 @@ def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> It
         yield change([task.renamed(spare[other], new)], f"the name of {WHAT.get(kind, 'a file')}")
 
 
-def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
+def package_names(task: PackageTask, new: str) -> Proposals:
     """Yield edits that give the package one name in all its files.
 
     The package has another name or several.

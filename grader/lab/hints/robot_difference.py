@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from grader.base.element_edits import escaped
-from grader.base.names import near
+from grader.base.names import closest, near
 from grader.base.source import Edits
 from grader.base.text import enumerated, quoted
 from grader.lab.hints.edits import MAX_IN_HINT
@@ -52,6 +52,9 @@ class Piece(NamedTuple):
         return not tags.isdisjoint(("origin", "axis")) and tags.isdisjoint(_ENDS)
 
 
+Pieces = Iterator[Piece]
+
+
 class MissingPart(NamedTuple):
     """A link or joint of the reference that a robot does not have: nothing writes it."""
 
@@ -83,7 +86,8 @@ class RobotDifference:
     @cached_property
     def pieces(self) -> list[Piece]:
         """The pieces, each once: values first, then what moves, is added and is removed."""
-        return _unique([*self._pieces(self._steps), *self._materials(), *self._joint_names()])
+        pieces = [*self._misspelt_attributes(), *self._pieces(self._steps)]
+        return _unique([*pieces, *self._materials(), *self._joint_names()])
 
     @cached_property
     def missing(self) -> list[MissingPart]:
@@ -131,7 +135,7 @@ class RobotDifference:
         first = sets[0]
         return self.piece(first.owner, _cause(sets), sets=tuple(sets), rank=rank, tag=first.tag)
 
-    def each(self, sets: Sequence[Set]) -> Iterator[Piece]:
+    def each(self, sets: Sequence[Set]) -> Pieces:
         """Yield the pieces that set each value alone, and all together."""
         yield from (self.piece_of_sets([one]) for one in sets)
         if len(sets) > 1:
@@ -148,7 +152,18 @@ class RobotDifference:
         edits = (*self.draft.remove(element), *self.draft.insert(parent, text))
         return self.piece(element, cause, edits)._replace(around=parent)
 
-    def _materials(self) -> Iterator[Piece]:
+    def _misspelt_attributes(self) -> Pieces:
+        """Give attributes that ROS 2 ignores the missing names that they are like."""
+        for element in self.draft.root.iter(*TAGS):
+            known, given = TAGS[str(element.tag)].attributes.keys(), list(map(str, element.keys()))
+            for name in given:
+                meant = closest(name, sorted(known - {*given})) if name not in known else None
+                if meant is not None:
+                    edits = self.draft.rename_attribute(element, name, meant)
+                    cause = f"the name of the attribute {meant} of {{}}"
+                    yield self.piece(element, cause, edits, rank=SIBLING)
+
+    def _materials(self) -> Pieces:
         """Name a material as links use it, or give a link the reference's colour.
 
         It does the latter for what a link shows if no material has the colour.
@@ -171,7 +186,7 @@ class RobotDifference:
         for used in self.draft.root.iter("material"):
             yield from self._material(used, own_materials)
 
-    def _material(self, used: Element, own_names: Collection[str]) -> Iterator[Piece]:
+    def _material(self, used: Element, own_names: Collection[str]) -> Pieces:
         link = self.reference.link(self.draft.find_link(used))
         shown = next(link.iter("material"), None) if link is not None else None
         if shown is None:
@@ -189,7 +204,7 @@ class RobotDifference:
             replaced = self.draft.replace(used, self.reference.text(like))
             yield self.piece(used, "the material of {}", replaced)
 
-    def _joint_names(self) -> Iterator[Piece]:
+    def _joint_names(self) -> Pieces:
         """Rename joints as in the reference, also where they are mimicked."""
         every: list[Set] = []
         for new, old in self._names["joint"].items():
@@ -218,7 +233,7 @@ class RobotDifference:
             values["version"] = version
         return Node("robot", (), values, nodes, draft.root)
 
-    def _pieces(self, steps_of_one: Sequence[Step]) -> Iterator[Piece]:
+    def _pieces(self, steps_of_one: Sequence[Step]) -> Pieces:
         for values in _values_of_one(steps_of_one):
             yield from self._value_pieces(values)
         for step in steps_of_one:
@@ -241,7 +256,7 @@ class RobotDifference:
                 case "remove":
                     yield from self._remove(own_node)
 
-    def _value_pieces(self, steps_of_one: Sequence[Step]) -> Iterator[Piece]:
+    def _value_pieces(self, steps_of_one: Sequence[Step]) -> Pieces:
         """Yield the values of one element: each alone, and all together."""
         element: Element = steps_of_one[0].own_node.of
         wanted = {step.name: _wanted_value(step) for step in steps_of_one}
@@ -264,7 +279,7 @@ class RobotDifference:
             return False
         return self.draft.find_joint(name) is None
 
-    def _rename(self, element: Element, name: str) -> Iterator[Piece]:
+    def _rename(self, element: Element, name: str) -> Pieces:
         """Rename an element.
 
         This is a link with all that names it, or alone; a joint; or a material where it is used or
@@ -282,7 +297,7 @@ class RobotDifference:
                 cause = f"the name {quoted(old)} of a {tag}" if old else f"the name of a {tag}"
                 yield self.piece(element, cause, sets=sets, link=link)
 
-    def _remove(self, node: Node) -> Iterator[Piece]:
+    def _remove(self, node: Node) -> Pieces:
         """Remove what the reference does not have; an origin or axis gets its default."""
         element, tag = node.of, node.tag
         around = element.getparent()
@@ -306,7 +321,7 @@ class RobotDifference:
             key for child in self.draft.root.iterchildren("*") for key in _identities(child)
         )
 
-    def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
+    def _inner(self, parent: Element, element: Element) -> Pieces:
         """Add an element to another one.
 
         These are values of an origin or axis, another shape, or the element as it is.

@@ -19,6 +19,7 @@ from grader.lab.hints.robot_difference import (
     SIBLING,
     STRUCTURE,
     Piece,
+    Pieces,
     RobotDifference,
     normal,
 )
@@ -81,7 +82,7 @@ def _first_parts(draft: Draft, link: str) -> dict[str, Element]:
     return parts
 
 
-def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
+def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Pieces:
     """Yield the numbers of the link at the other side, mirrored.
 
     There are some only where the student builds both unlike the reference.
@@ -104,7 +105,7 @@ def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[P
 
 def _mirror_numbers(
     difference: RobotDifference, other: Element, like: Element | None, known: Sequence[Element]
-) -> Iterator[Piece]:
+) -> Pieces:
     """Yield the mirrored numbers of another element that are not `known`.
 
     Those of its own element, the first of `known`, get them.
@@ -131,7 +132,7 @@ def _mirrored(values: Values) -> Iterator[Values]:
             yield (*values[:index], -value, *values[index + 1 :])
 
 
-def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
+def of_own(difference: RobotDifference, links: Iterable[str]) -> Pieces:
     """Yield the numbers of links as they may be meant, where they are not the reference's.
 
     Where xacro computes them, yield the numbers that they come from.
@@ -155,7 +156,7 @@ def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]
                         seen.add(piece.edits)
 
 
-def _exchange_of_two(difference: RobotDifference, element: Element) -> Iterator[Piece]:
+def _exchange_of_two(difference: RobotDifference, element: Element) -> Pieces:
     """Yield what exchanges the two single numbers of an element, such as radius and length."""
     single = []
     for name, attribute in TAGS[str(element.tag)].attributes.items():
@@ -170,7 +171,7 @@ def _exchange_of_two(difference: RobotDifference, element: Element) -> Iterator[
         yield difference.piece_of_sets(sets, OWN)
 
 
-def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> Iterator[Piece]:
+def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> Pieces:
     """Yield the numbers that an attribute may be meant to have, where it is written.
 
     If xacro computes it, yield those that it comes from.
@@ -213,7 +214,7 @@ def _exchanged_lengths(
     element: Element,
     name: str,
     definitions: "Sequence[NumberDefinition]",
-) -> Iterator[Piece]:
+) -> Pieces:
     """Yield the edits that exchange two of the lengths that an attribute is computed from."""
     lengths = [number for number in definitions if abs(read_values(number.text)[0]) != 1.0]
     cause = f"the numbers from which the {name} of {{}} is computed"
@@ -290,9 +291,7 @@ def _other_side(link: str) -> str:
     return _WORD.sub(lambda word: _SIDES.get(word[0], word[0]), link)
 
 
-def leveled_supports(
-    difference: RobotDifference, links: Sequence[str], base: str
-) -> Iterator[Piece]:
+def leveled_supports(difference: RobotDifference, links: Sequence[str], base: str) -> Pieces:
     """Yield the height at which a support is level with the others.
 
     It is above or below them.
@@ -314,7 +313,7 @@ def leveled_supports(
     yield difference.piece_of_sets([Set(origin, "", "xyz", xyz)], OWN)
 
 
-def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
+def in_another_unit(difference: RobotDifference) -> Pieces:
     """Yield all lengths in metres.
 
     This is for a robot of which they are all in centimetres or millimetres.
@@ -341,7 +340,7 @@ def _list_lengths(draft: Draft) -> Iterator[tuple[Element, str, Values]]:
                 yield element, name, values
 
 
-def whole_links(difference: RobotDifference) -> Iterator[Piece]:
+def whole_links(difference: RobotDifference) -> Pieces:
     """Yield where each link and what it shows are, and all its values.
 
     Where they are is also yielded with what it carries.
@@ -377,7 +376,7 @@ def _is_pose(change: Set) -> bool:
     return "origin" in tags or "axis" in tags
 
 
-def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -> Iterator[Piece]:
+def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -> Pieces:
     changed = {(change.owner, change.tag): change for change in sets}
     if len(changed) < 2:
         return
@@ -400,7 +399,7 @@ def _causes(difference: RobotDifference, changes: Sequence[Set]) -> str:
     return ", and ".join([*exchanged, *([" and ".join(others)] if others else [])])
 
 
-def whole_elements(difference: RobotDifference) -> Iterator[Piece]:
+def whole_elements(difference: RobotDifference) -> Pieces:
     """Yield the changes in one element together, and in one child of the robot.
 
     Of links and joints, no values are among them.

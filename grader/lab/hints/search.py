@@ -15,7 +15,7 @@ from decimal import Decimal
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.base.errors import InputError
+from grader.base.errors import InputError, NotDecided
 from grader.base.slips import Slip
 from grader.base.source import Certainty, Edits
 from grader.base.text import enumerated
@@ -192,6 +192,20 @@ def _has_new_build_errors(before: Submission, after: Submission) -> bool:
         return False  # what is wrong after that line shows only now
     known = {(stop.path, stop.reason) for stop in was.stops}
     return any((stop.path, stop.reason) not in known for stop in now.stops)
+
+
+def _count_connections(submission: Submission | None) -> Counter[tuple[str, str]]:
+    """Return how many connections of each kind each launch file makes."""
+    from grader.workspace.api import connections_in, launch_graph  # late: few edits need them
+
+    counts: Counter[tuple[str, str]] = Counter()
+    with suppress(NotDecided):
+        assert submission is not None
+        for _, launch in submission.workspace.launches.roots:
+            path = launch.source.path
+            graph = launch_graph(submission.workspace, path)
+            counts.update((path, connection.kind) for connection in connections_in(graph))
+    return counts
 
 
 def _repeated(urdf: Read) -> set[tuple[str, str]]:
@@ -522,7 +536,7 @@ class HintSearch:
         """Add the hint of a proposal if it is proven, and return whether it was added."""
         wanted = best.passes & {*self._lost}
         proof = self._find_proof(best.proposal, wanted)
-        if proof is None or self._is_half(best, proof.results):
+        if proof is None or self._is_half(best, proof.results) or self._disconnects(proof):
             return False
         best = best._replace(proposal=proof.proposal)
         equal = self._equal_to(best, proof.together, wanted, tried)
@@ -545,6 +559,18 @@ class HintSearch:
         self.results = proof.results
         self._refused = set()
         return True
+
+    def _disconnects(self, proof: _Proof) -> bool:
+        """Return whether launch files connect less with the edits of a package.
+
+        A controller that hears nothing compares with nothing.
+        """
+        edits = proof.proposal.edits
+        if all(edit.path.endswith(ROBOT_ENDINGS) for edit in edits):
+            return False
+        before = self.trials.edited(self.edits) if self.edits else self.trials.submission
+        after = self.trials.edited((*self.edits, *edits))
+        return bool(_count_connections(before) - _count_connections(after))
 
     def _weight(self, name: str) -> tuple[bool, bool, Decimal]:
         """Return how well a criterion shows a hint.

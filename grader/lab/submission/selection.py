@@ -41,6 +41,7 @@ _ELSEWHERE = {
     Belonging.OTHER_LAB: "it is in the folder of another lab",
     Belonging.NO_LAB: "it is outside the folder of this lab",
 }
+_Packages = tuple[Package, ...]
 
 
 class UrdfChoice(NamedTuple):
@@ -89,7 +90,7 @@ class _Selection(NamedTuple):
 
     choice: UrdfChoice
     tree: Tree  # of the lab's folder, if it has one: documents are in it
-    packages: tuple[Package, ...]
+    packages: _Packages
     no_package: NoPackage
     others: tuple[OtherCandidate, ...]  # robots and packages that are not graded
     own_folder: str  # of the lab
@@ -143,9 +144,7 @@ def _note_on_several(choice: UrdfChoice) -> str:
     )
 
 
-def _only_package(
-    packages: tuple[Package, ...], lab: Lab, around_urdf: Package | None
-) -> Package | None:
+def _only_package(packages: _Packages, lab: Lab, around_urdf: Package | None) -> Package | None:
     """Return the package of a lab that names one, or none.
 
     This is that around the URDF, unless another one has the name.
@@ -262,7 +261,7 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
 
     # The packages are those of the best place that has any: all others are elsewhere.
     package_place = places.find_best(package_files)
-    packages: tuple[Package, ...] = ()
+    packages: _Packages = ()
     files_elsewhere = package_files
     if package_place is not None:
         package_tree = places.only(tree, (package_place,))
@@ -294,7 +293,7 @@ def _list_elsewhere(
     )
 
 
-def _packages_in(tree: Tree, lab: Lab) -> tuple[Package, ...]:
+def _packages_in(tree: Tree, lab: Lab) -> _Packages:
     releases = (lab.distro,) if lab.distro is not None else ()
     return read_packages(
         tree,
@@ -329,7 +328,7 @@ def _robots_in_packages(
 
 
 def _why_no_package(
-    packages: tuple[Package, ...], elsewhere: tuple[Package, ...], lab: Lab, searched: Tree
+    packages: _Packages, elsewhere: _Packages, lab: Lab, searched: Tree
 ) -> NoPackage:
     """Return why no package is graded, if none is. `elsewhere` are those outside of this lab."""
     name = lab.package_names[0]
@@ -413,7 +412,7 @@ class UrdfSearch(NamedTuple):
     lab: Lab
     labs: LabFolders
     opening: Opening
-    packages: tuple[Package, ...]
+    packages: _Packages
 
     def choose(self, robots: Sequence[RobotFile]) -> UrdfChoice:
         """Return which of the robots is graded.

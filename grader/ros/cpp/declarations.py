@@ -7,7 +7,11 @@ from itertools import islice
 from typing import NamedTuple
 
 from grader.base.source import Location
-from grader.ros.cpp.syntax import CppNode, CppSyntax
+from grader.ros.cpp.syntax import (
+    CppNode,
+    CppNodes,
+    CppSyntax,
+)
 
 _NOT_PLAIN = re.compile(r"[<>\s]")  # in a name
 CONDITIONS = (
@@ -60,7 +64,7 @@ class CppFunction(NamedTuple):
         return self.node.child("body")
 
     @property
-    def parameters(self) -> list[CppNode]:
+    def parameters(self) -> CppNodes:
         """Its parameters, in their order."""
         declarator = _function_declarator(self.node)
         parameter_list = declarator.child("parameters") if declarator is not None else None
@@ -106,7 +110,7 @@ class CppFile:
     @cached_property
     def uses(self) -> Mapping[str, Sequence[CppNode]]:
         """Where each name of a variable, function or member is written."""
-        nodes_by_name: dict[str, list[CppNode]] = {}
+        nodes_by_name: dict[str, CppNodes] = {}
         for node in self.syntax.nodes:
             if node.kind in ("identifier", "field_identifier") or is_argument(node):
                 nodes_by_name.setdefault(node.text, []).append(node)

@@ -111,6 +111,9 @@ class CppNode:
             node = node.parent
 
 
+CppNodes = list[CppNode]
+
+
 class CppSyntax:
     """A C++ file: its text, the root of its syntax, and its nodes in the order of the text.
 
@@ -122,12 +125,12 @@ class CppSyntax:
     def __init__(self, path: str, text: str) -> None:
         self.source = Source(path, text)
         self.data = text.encode("utf-8", "replace")
-        self.nodes: list[CppNode] = []
+        self.nodes: CppNodes = []
         self.root = CppNode(self, "translation_unit", None, (0, len(self.data)), None)
         self.add(self.root)
         self.unread = ""
         self.error: Location | None = None
-        self.broken: list[CppNode] = []
+        self.broken: CppNodes = []
 
     def add(self, node: CppNode) -> None:
         """Add a node to its parent, and behind the nodes that the file has."""
@@ -240,9 +243,9 @@ def _blanked(match: re.Match[str]) -> str:
     return "".join(letter if letter == "\n" else " " * len(letter.encode()) for letter in match[0])
 
 
-def _copy(cursor: "TreeCursor", syntax: CppSyntax) -> list[CppNode]:
+def _copy(cursor: "TreeCursor", syntax: CppSyntax) -> CppNodes:
     """Copy the nodes of tree-sitter that have a name or a role; return those that are no C++."""
-    errors: list[CppNode] = []
+    errors: CppNodes = []
     parents = [syntax.root]
     root = cursor.node
     has_errors = root is not None and root.has_error

@@ -15,7 +15,11 @@ from grader.ros.cpp.declarations import (
     is_guard,
     plain_name,
 )
-from grader.ros.cpp.syntax import CppNode, CppSyntax
+from grader.ros.cpp.syntax import (
+    CppNode,
+    CppNodes,
+    CppSyntax,
+)
 
 _MAX_ALIASES = 10  # in a row
 _MAX_OPENED = 20  # namespaces
@@ -163,7 +167,7 @@ class CppUnit:
     @cached_property
     def uses(self) -> Mapping[str, Sequence[CppNode]]:
         """Where each name of a variable, function or member is written."""
-        by_name: dict[str, list[CppNode]] = {}
+        by_name: dict[str, CppNodes] = {}
         for file in self.files:
             for name, nodes in file.uses.items():
                 by_name.setdefault(name, []).extend(nodes)
@@ -175,7 +179,7 @@ class CppUnit:
 
     @cached_property
     def _calls(self) -> Mapping[CppNode, Sequence[CppNode]]:
-        calls: dict[CppNode, list[CppNode]] = {}
+        calls: dict[CppNode, CppNodes] = {}
         for file in self.files:
             for node in file.calls:
                 function = self.function_around(node)
@@ -219,7 +223,7 @@ def called_name(call: CppNode) -> str:
     return call.called
 
 
-def list_arguments(call: CppNode) -> list[CppNode]:
+def list_arguments(call: CppNode) -> CppNodes:
     """Return the arguments of a call, of a constructor or of an initializer."""
     given = call.child("arguments")
     if given is None:

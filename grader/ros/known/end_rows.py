@@ -145,6 +145,12 @@ def opened_ends(package: str, program: str) -> OpenedEnds | None:
     )
 
 
+def program_of_component(package: str, plugin: str) -> str:
+    """Return the program that starts the class of a component; the class if none is known."""
+    rows = _ends_of_package(package).program if package in packages_with_ends() else {}
+    return (rows[plugin].like if plugin in rows else "") or plugin
+
+
 def nodes_of_launch_file(package: str, file: str, release: Release) -> list[IncludedNode]:
     """Return the nodes that an installed launch file starts; none where that is not known."""
     if package not in packages_with_ends():

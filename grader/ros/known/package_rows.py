@@ -18,6 +18,7 @@ from grader.ros.known.package_files import (
 from grader.ros.known.typed_rows import read_row
 
 _WheelNumber = Literal["radius", "diameter", "track", "pivots", "wheelbase", "half sum", "ring"]
+_Names = tuple[str, ...]
 
 
 class DecidingParameter(NamedTuple):
@@ -54,8 +55,8 @@ class WheelRow(NamedTuple):
     """
 
     number: _WheelNumber
-    of: tuple[tuple[str, ...], ...]
-    unless: tuple[str, ...] = ()  # factors that correct the number
+    of: tuple[_Names, ...]
+    unless: _Names = ()  # factors that correct the number
 
 
 class GainsRow(NamedTuple):
@@ -66,9 +67,22 @@ class GainsRow(NamedTuple):
 
     joints: str  # a parameter
     interfaces: str  # a parameter
-    names: tuple[str, ...]
-    of: tuple[str, ...]  # the interfaces
+    names: _Names
+    of: _Names  # the interfaces
     without: Mapping[str, str] = {}  # the parameter that switches this off for an interface
+
+
+class _FeedbackRow(NamedTuple):
+    """The state interface of each joint that a controller reads, as one of two that a switch names.
+
+    It reads none where another switch is on.
+    """
+
+    joints: _Names  # parameters
+    switch: str  # a parameter, which is on by default
+    on: str  # the interface
+    off: str
+    unless: str  # the other switch, which is off by default
 
 
 class CommandRow(NamedTuple):
@@ -93,15 +107,15 @@ class ProgramRow(NamedTuple):
     source: str = ""
     like: str = ""  # the program of the package that opens and publishes the same
     name: str | None = None  # of the node where its launch file gives none
-    usual_names: tuple[str, ...] = ()  # of the node in launch files, or of its program
-    children: tuple[str, ...] = ()  # nodes in its process, with own sections in parameter files
-    ends_unless: tuple[str, ...] | None = None  # the options without which it ends by itself
-    valued_options: tuple[str, ...] = ()  # that a value follows; the others are switches
+    usual_names: _Names = ()  # of the node in launch files, or of its program
+    children: _Names = ()  # nodes in its process, with own sections in parameter files
+    ends_unless: _Names | None = None  # the options without which it ends by itself
+    valued_options: _Names = ()  # that a value follows; the others are switches
     publishes_joint_states: bool = False  # of all joints
     reads_keys: bool = False  # from its terminal, without which it stops
     subscriptions: Mapping[str, str] = {}  # topics with their types
     publishers: Mapping[str, str] = {}
-    names: tuple[str, ...] = ()  # further topics and services
+    names: _Names = ()  # further topics and services
     inputs: Mapping[str, str] = {}  # parameters that name topics, before a number, with the types
     command: CommandRow | None = None
     transforms: tuple[_TransformRow, ...] = ()
@@ -118,6 +132,7 @@ class _ControllerRow(NamedTuple):
     action: str = ""  # below its name
     publishes_joint_states: bool = False  # of all joints
     gains: GainsRow | None = None
+    feedback: _FeedbackRow | None = None
     transforms: tuple[_TransformRow, ...] = ()
     wheels: Mapping[str, WheelRow] = {}  # by its parameters with numbers
 
@@ -127,8 +142,8 @@ class _LaunchFileRow(NamedTuple):
 
     # What it starts of robot_state_publisher, joint_state_publisher, joint_state_publisher_gui and
     # rviz2, with the defaults of its arguments.
-    starts: tuple[str, ...]
-    arguments: tuple[str, ...] | None = None  # None where not all are known
+    starts: _Names
+    arguments: _Names | None = None  # None where not all are known
 
 
 class PackageRow(NamedTuple):
@@ -136,7 +151,7 @@ class PackageRow(NamedTuple):
 
     source: str = ""
     is_installed: bool = False  # with ROS 2, whether package.xml names it or not
-    programs: tuple[str, ...] | None = None  # of any release; None where not all are known
+    programs: _Names | None = None  # of any release; None where not all are known
     is_compared: bool = False  # whether launch files are compared with these programs
     # What no program of it has: other frames than those of shared_names.toml and of the robot; a
     # lifecycle node; a subscription of commands.
@@ -145,12 +160,12 @@ class PackageRow(NamedTuple):
     relays: bool = False  # what programs elsewhere publish and serve, with any type
     compares_time: bool = False  # of messages with its own clock
     holds_nodes: bool = False  # to which its programs give their parameter files
-    launch_actions: tuple[str, ...] = ()  # that it adds to launch files in XML and YAML
+    launch_actions: _Names = ()  # that it adds to launch files in XML and YAML
     launches_no_clock: bool = False  # whether nothing in its launch files publishes /clock
-    members: tuple[str, ...] = ()  # of a metapackage: the dependencies in its package.xml
-    plugins: tuple[str, ...] = ()  # classes that parameter files name
-    reads: tuple[str, ...] = ()  # parameters and arguments with files that are read, not written
-    writes: tuple[str, ...] = ()  # files below its share folder, at run time
+    members: _Names = ()  # of a metapackage: the dependencies in its package.xml
+    plugins: _Names = ()  # classes that parameter files name
+    reads: _Names = ()  # parameters and arguments with files that are read, not written
+    writes: _Names = ()  # files below its share folder, at run time
     program: Mapping[str, ProgramRow] = {}
     controller: Mapping[str, _ControllerRow] = {}
     launch: Mapping[str, _LaunchFileRow] = {}
@@ -223,7 +238,7 @@ def _programs(key: IndexedKey) -> Iterator[tuple[str, ProgramRow]]:
 
 
 @cache
-def controller_types() -> tuple[str, ...]:
+def controller_types() -> _Names:
     """Return all known types of controllers."""
     types: list[str] = []
     for package, row in _rows_with("controller"):
@@ -241,9 +256,9 @@ def controller_actions() -> frozenset[str]:
 
 
 @cache
-def launch_arguments() -> Mapping[str, tuple[str, ...]]:
+def launch_arguments() -> Mapping[str, _Names]:
     """Return the arguments of installed launch files, by their paths from share/ on."""
-    arguments: dict[str, tuple[str, ...]] = {}
+    arguments: dict[str, _Names] = {}
     for package, row in _rows_with("arguments"):
         for file, launch in row.launch.items():
             if launch.arguments is not None:
@@ -252,7 +267,7 @@ def launch_arguments() -> Mapping[str, tuple[str, ...]]:
 
 
 @cache
-def plugin_classes() -> tuple[str, ...]:
+def plugin_classes() -> _Names:
     """Return the plugins that parameter files name, as `nav2_behaviors::Spin`."""
     classes: list[str] = []
     for package, row in _rows_with("plugins"):
@@ -286,7 +301,7 @@ def usual_names() -> Mapping[str, str]:
 
 
 @cache
-def children_by_node() -> Mapping[str, tuple[str, ...]]:
+def children_by_node() -> Mapping[str, _Names]:
     """Return the nodes that others make in their process, by the names of these."""
     rows = _programs("children")
     return {row.name: row.children for _, row in rows if row.name is not None and row.children}
@@ -304,7 +319,7 @@ def frame_parameters() -> frozenset[str]:
 
 
 @cache
-def commands_that_end() -> tuple[str, ...]:
+def commands_that_end() -> _Names:
     """Return the commands that start programs which end by themselves."""
     ending = [name for name, row in _programs("ends_unless") if row.ends_unless is not None]
     return tuple(f"ros2 run {name.replace('/', ' ')}" for name in ending)
@@ -328,7 +343,7 @@ def is_known_package(name: str) -> bool:
     return package_row(name).is_named or name in _members()
 
 
-def find_programs(package: str) -> tuple[str, ...]:
+def find_programs(package: str) -> _Names:
     """Return the programs of a package that is installed with ROS 2, if all are known."""
     row = package_row(package)
     return (row.programs or ()) if row.is_installed else ()

@@ -42,6 +42,8 @@ class _PythonTable(NamedTuple):
     """What nodes in Python use."""
 
     node_attributes: frozenset[str]  # public ones of rclpy's nodes
+    modules: frozenset[str]  # of packages of ROS 2, in any release
+    of_ros1: frozenset[str]  # modules that no release has
 
 
 class StartRow(NamedTuple):

@@ -11,7 +11,14 @@ from typing import NamedTuple, Protocol
 from grader.ros.installation.places import PREFIX, SHARE
 from grader.ros.launch.call_arguments import PARTIAL, describe_kind, items_in
 from grader.ros.launch.components import load_by_command, load_components, start_container
-from grader.ros.launch.launch_classes import CONDITION, ENTITY, SOURCE, class_named, is_a
+from grader.ros.launch.launch_classes import (
+    CONDITION,
+    ENTITY,
+    SOURCE,
+    SUBSTITUTION,
+    class_named,
+    is_a,
+)
 from grader.ros.launch.launch_model import (
     NAMESPACE,
     Context,
@@ -291,7 +298,7 @@ def _refuse_action(_: ActionVisitor, call: Call, __: Context, ___: bool | None) 
 def _condition_holds(given: Value, context: Context, at: Position) -> bool:
     if isinstance(given, Unknown):
         raise given.as_signal(given.at)
-    if not isinstance(given, Call):
+    if not isinstance(given, Call) or is_a(given.name, SUBSTITUTION):
         raise EvaluationFails(
             f"condition is {describe_kind(given)}, not a condition such as IfCondition(...)", at
         )

@@ -107,6 +107,7 @@ _ACTIONS = (
     "ComposableLifecycleNode",
 )
 _BOOLEAN_CHOICES = ("true", "false", "True", "False", "TRUE", "FALSE")
+_TEXTUAL = ("text", "texts", "path", "mapping")  # the checks of what may be a substitution
 _MAX_DEPTH = 20  # of lists in others
 _TAKES_A_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
 # The classes that are evaluated, besides the sources of included files; what is wrong with their
@@ -175,6 +176,20 @@ def join_path(evaluation: Evaluation, call: Call) -> Value:
     before = listed(owner.kwargs["substitutions"]) if owner.name == JOINED_PATH else [owner]
     parts = [*before, *call.args]
     return _record_constructor(cls, evaluation, Call("", [parts], {}, call.at))
+
+
+def texts_from_paths(cls: LaunchClass, call: Call) -> list[str]:
+    """Return the arguments of a constructor that have to be texts, and are or have a path."""
+    names = [name for name, row in cls.parameters.items() if row.check in _TEXTUAL]
+    return [name for name in names if _has_path(call.kwargs.get(name))]
+
+
+def _has_path(value: Value) -> bool:
+    if isinstance(value, dict):
+        value = [*value.values()]
+    return isinstance(value, PurePosixPath) or (
+        isinstance(value, list | tuple) and any(map(_has_path, value))
+    )
 
 
 def _copied(value: Value, evaluation: Evaluation, depth: int = 0) -> Value:

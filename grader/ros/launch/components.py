@@ -22,7 +22,13 @@ from grader.ros.launch.node_parameters import (
     parameters_in_words,
     remap_rules,
 )
-from grader.ros.launch.started_nodes import REMAPS, evaluate_remaps, namespace_below
+from grader.ros.launch.started_nodes import (
+    REMAPS,
+    evaluate_remaps,
+    find_description,
+    namespace_below,
+    read_frame_prefix,
+)
 from grader.ros.launch.substitutions import (
     CONDITIONS,
     PART_UNKNOWN,
@@ -148,6 +154,13 @@ def _add_components(
         package = _text_if_known(item.kwargs["package"], context, item)
         plugin = _text_if_known(item.kwargs["plugin"], context, item)
         at = findings.locate(item.at)
+        node = _as_node(item, package, plugin, is_loaded, context, at)
+        if node is not None and node.is_state_publisher:
+            node = node._replace(frame_prefix=read_frame_prefix(item, context))
+            if is_loaded is not False:
+                # The process of its container may have a file of parameters for it.
+                given = {"ros_arguments": (), **item.kwargs}
+                find_description(findings, Call(item.name, [], given, item.at), context)
         findings.components.append(
             LoadedComponent(
                 package,
@@ -157,7 +170,7 @@ def _add_components(
                 loaded_at,
                 container,
                 has_parameters=bool(item.kwargs.get("parameters")),
-                node=_as_node(item, package, plugin, is_loaded, context, at),
+                node=node,
             )
         )
 

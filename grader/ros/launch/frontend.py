@@ -50,6 +50,7 @@ _BEFORE_NEXT = {
     "'": " '()",
     '"': ' "()',
 }  # what ends a value, in no quotes and in each kind of quotes
+_Values = list[Value]
 
 
 class _SubstitutionFormat(NamedTuple):
@@ -401,9 +402,9 @@ def _position_at(location: Location) -> Position:
     return Position(location.line, location.column)
 
 
-def read_actions(parent: _Entity, findings: Findings) -> list[Value]:
+def read_actions(parent: _Entity, findings: Findings) -> _Values:
     """Return the actions in an entity; errors, which stop the launch, are added to the findings."""
-    values: list[Value] = []
+    values: _Values = []
     for entity in parent.actions:
         try:
             values.append(_read_action(entity, findings))
@@ -600,7 +601,7 @@ def _read_component(entity: _Entity) -> Call:
     return component
 
 
-def _read_pairs(elements: list[_Entity], *names: str) -> list[tuple[list[Value], ...]]:
+def _read_pairs(elements: list[_Entity], *names: str) -> list[tuple[_Values, ...]]:
     """Return the values of two attributes of each element. Raises EvaluationSignal."""
     given = [_read_attributes(element, _NESTED[element.kind]) for element in elements]
     pairs = []
@@ -682,7 +683,7 @@ def _converted(text: str, kind: type, entity: _Entity) -> dict[str, Value]:
         raise EvaluationFails(message, entity.place("value")) from None
 
 
-def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:
+def _separated_values(entity: _Entity, kind: str | None) -> _Values:
     """Return the list that a value in XML is with the attribute value-sep.
 
     It is split as by launch_xml's entity.py.
@@ -690,13 +691,13 @@ def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:
     text, separator = str(entity.attributes["value"]), str(entity.attributes["value-sep"])
     if not separator:
         raise EvaluationFails("value-sep is empty", entity.at)
-    items: list[Value] = [_typed_text(part, None, entity.at) for part in text.split(separator)]
+    items: _Values = [_typed_text(part, None, entity.at) for part in text.split(separator)]
     if kind is not None or "$(" in text or len({type(item) for item in items}) > 1:
         raise Undetermined("this list in a <param> is not evaluated", entity.at)
     return [_parse_value(item, entity.at)[0] if isinstance(item, str) else item for item in items]
 
 
-def _parse_value(text: str, at: Position) -> list[Value]:
+def _parse_value(text: str, at: Position) -> _Values:
     """Return a value as a list of strings and substitutions. Raises EvaluationFails."""
     parser = _ValueParser(text, at)
     parts = parser.template("", 0)
@@ -715,12 +716,12 @@ def _parse_if_text(value: Any, at: Position) -> Any:
     return parts
 
 
-def _command_line(text: str, at: Position) -> list[list[Value]]:
+def _command_line(text: str, at: Position) -> list[_Values]:
     """Return the words of a line as launch splits it.
 
     Strings are split, the values of substitutions are not.
     """
-    words: list[list[Value]] = [[]]
+    words: list[_Values] = [[]]
     for piece in _parse_value(text, at):
         if not isinstance(piece, str):
             words[-1].append(piece)
@@ -785,9 +786,9 @@ class _ValueParser:
     def next(self) -> str:
         return self.text[self.position : self.position + 1]
 
-    def template(self, quote: str, depth: int) -> list[Value]:
+    def template(self, quote: str, depth: int) -> _Values:
         """Return strings and substitutions, up to the closing quote or the end."""
-        parts: list[Value] = []
+        parts: _Values = []
         while self.position < len(self.text) and (not quote or self.next != quote):
             parts.append(self.part(quote, quote, depth))
         if quote and self.position >= len(self.text):
@@ -819,7 +820,7 @@ class _ValueParser:
             raise EvaluationFails(
                 f"there is no name of a substitution after $( in {self.text[:60]!r}", self.at
             )
-        self.position, values = name.end(), list[list[Value]]()
+        self.position, values = name.end(), list[_Values]()
         while self.next == " ":
             self.position += 1
             values.append(self.value(quote, depth))
@@ -832,12 +833,12 @@ class _ValueParser:
         self.position += 1
         return self.call(name[0], values)
 
-    def value(self, quote: str, depth: int) -> list[Value]:
+    def value(self, quote: str, depth: int) -> _Values:
         if not quote and self.next in ("'", '"'):
             start = self.next
             self.position += 1
             return self.template(start, depth)
-        parts: list[Value] = []
+        parts: _Values = []
         while self.next and self.next not in _BEFORE_NEXT[quote]:
             parts.append(self.part(_BEFORE_NEXT[quote], quote, depth))
         if not parts:
@@ -847,7 +848,7 @@ class _ValueParser:
             )
         return parts
 
-    def call(self, name: str, values: list[list[Value]]) -> Call:
+    def call(self, name: str, values: list[_Values]) -> Call:
         """Return a substitution as the call that it is in Python. Raises EvaluationFails."""
         if name == "command" and len(values) > 1 and values[1] not in _ON_STDERR:
             raise EvaluationFails(
@@ -876,7 +877,7 @@ class _ValueParser:
         hint = f"; did you mean $({similar} ...)?" if similar else ""
         raise EvaluationFails(f"there is no substitution $({name} ...){hint}", self.at)
 
-    def call_with_rest(self, name: str, values: list[list[Value]]) -> Call:
+    def call_with_rest(self, name: str, values: list[_Values]) -> Call:
         """Return a substitution that takes any number of values. Raises EvaluationFails."""
         required, _, rest = _SUBSTITUTIONS[name]
         if len(values) <= len(required):
@@ -905,7 +906,7 @@ def find_later_words(root: _Entity, findings: Findings) -> None:
         for kind, name, at in words:
             since = first_release(kind, name)
             if since:
-                findings.add_later(_describe_word(kind, name), since, at)
+                findings.add_later(f"there is no {_describe_word(kind, name)}", since, at)
 
 
 def _describe_word(kind: str, name: str) -> str:

@@ -21,7 +21,13 @@ from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.installation.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.ros.known.releases import Release
 from grader.ros.launch.actions import ActionVisitor, Include, NotIncluded
-from grader.ros.launch.call_arguments import PARTIAL, LaunchFunctions, describe_kind, join_path
+from grader.ros.launch.call_arguments import (
+    PARTIAL,
+    LaunchFunctions,
+    describe_kind,
+    join_path,
+    texts_from_paths,
+)
 from grader.ros.launch.launch_classes import (
     DESCRIPTION,
     JOINED_PATH,
@@ -101,6 +107,8 @@ _MOVEIT = "moveit_configs_utils"
 _NAVIGATION = "nav2_common.launch"
 _OF_NAVIGATION = ("RewrittenYaml", "ReplaceString", "HasNodeParams")
 _CONFIGURATION = "launch.substitutions.launch_configuration.LaunchConfiguration"
+# The first release whose updates take a path as a substitution: launch 1.0.14.
+_PATHS_SINCE = "humble"
 _MAX_INCLUDES = 40
 # What a launch file shares with those that it includes.
 _JOINED = (
@@ -311,8 +319,13 @@ def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
         findings.refer("read", contents, Call("", [], {}, at))
     for call in interpreter.calls:
         cls = class_named(call.name)
-        if cls is not None and cls.since:
-            findings.add_later(f"class {cls.short!r} of launch", cls.since, call.at)
+        if cls is None:
+            continue
+        if cls.since:
+            findings.add_later(f"there is no class {cls.short!r} of launch", cls.since, call.at)
+        for name in texts_from_paths(cls, call):
+            what, at = f"{name} of {cls.short} takes no path", call.places.get(name, call.at)
+            findings.add_later(what, _PATHS_SINCE, at, ": write str(...) around it")
 
 
 def _description_error(value: Value) -> str:
@@ -408,7 +421,11 @@ class _PythonLaunchFile:
 
             known = {**moveit_exports(), **known}
             self.moveit = MoveItConfigurations(lambda: self.context, self.reads).functions()
-        packages_last = sorted(known.items(), key=lambda export: -export[0].count("."))
+        # Users import a name from a package, not from a module that happens to import it as well.
+        packages = {module.rpartition(".")[0] for module in known}
+        packages_last = sorted(
+            known.items(), key=lambda export: (-export[0].count("."), export[0] in packages)
+        )
         self.interpreter = Interpreter(
             self._functions(),
             names,

@@ -262,6 +262,21 @@ class StartedNode(NamedTuple):
             return self.executable
         return f"{self.package}/{self.executable}"
 
+    @property
+    def program_name(self) -> str:
+        """The name of the program that is this node, also if its class is loaded as a component."""
+        from grader.ros.known.end_rows import program_of_component  # late: few files need its rows
+
+        if "::" not in self.executable:
+            return self.name
+        program = program_of_component(self.package, self.executable)
+        return self._replace(executable=program).name
+
+    @property
+    def is_state_publisher(self) -> bool:
+        """Whether it is robot_state_publisher, as a program or as a component."""
+        return STATE_PUBLISHER in (self.executable, self.program_name)
+
 
 class LoadedComponent(NamedTuple):
     """A class that a launch file loads into a container of rclcpp_components.
@@ -333,9 +348,9 @@ class LaunchFault(NamedTuple):
 
 
 class _LaterWord(NamedTuple):
-    """A class, an action or a substitution that releases before one do not have."""
+    """A class, an action, a substitution or a use of them that releases before one do not have."""
 
-    what: str  # what it is, with its name: "action 'bool_arg'"
+    message: str
     since: Release
     location: Location
 
@@ -372,8 +387,7 @@ class Launch(NamedTuple):
         faults = list(self.faults)
         for word in self.later:
             if releases and all(is_before(release, word.since) for release in releases):
-                message = f"there is no {word.what} before {word.since.title()}"
-                faults.append(LaunchFault(message, word.location))
+                faults.append(LaunchFault(word.message, word.location))
         if len(faults) == len(self.faults):
             return self
         return self._replace(faults=tuple(sorted(set(faults), key=ORDER)), later=())
@@ -400,9 +414,7 @@ class Launch(NamedTuple):
         tf2 ignores a slash at the start.
         """
         publishers = [
-            node
-            for node in self.nodes
-            if node.executable == STATE_PUBLISHER and node.when is not False
+            node for node in self.nodes if node.is_state_publisher and node.when is not False
         ]
         prefixes = dict.fromkeys(node.frame_prefix for node in publishers) or [""]
         return tuple(
@@ -454,9 +466,10 @@ class Findings:
         """Add what may stop the launch."""
         self.doubts.append(LaunchFault(not_evaluated(reason), self.locate(at)))
 
-    def add_later(self, what: str, since: str, at: Position) -> None:
-        """Add a word that releases before one do not have."""
-        self.later.append(_LaterWord(what, cast("Release", since), self.locate(at)))
+    def add_later(self, what: str, since: str, at: Position, hint: str = "") -> None:
+        """Add what is wrong before a release: "there is no action 'bool_arg'"."""
+        message = f"{what} before {since.title()}{hint}"
+        self.later.append(_LaterWord(message, cast("Release", since), self.locate(at)))
 
     def add_undecided(self, reason: str, at: Position) -> None:
         """Add what may start more, or stop the launch."""

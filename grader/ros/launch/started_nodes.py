@@ -107,7 +107,7 @@ def start_node(
     if not isinstance(package, str) or not isinstance(executable, str):
         _add_unknown_program((package, executable), findings, call)
         return
-    prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
+    prefix = read_frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
     node = StartedNode(package, executable, when, findings.locate(call.at), prefix)
     started = _add_names(node, call, context, findings, parameters)
     findings.nodes.append(started)
@@ -116,7 +116,7 @@ def start_node(
     if when is False:
         return
     if executable == STATE_PUBLISHER:
-        _find_description(findings, call, context)
+        find_description(findings, call, context)
     elif executable == _RVIZ:
         _find_configuration(findings, call, context)
 
@@ -365,8 +365,8 @@ def namespace_below(value: Value, context: Context, at: Position) -> str:
     return "/".join(filter(None, (above.removesuffix("/"), text)))
 
 
-def _frame_prefix(call: Call, context: Context) -> str | None:
-    """Return the parameter frame_prefix of a node."""
+def read_frame_prefix(call: Call, context: Context) -> str | None:
+    """Return the parameter frame_prefix of a node or a component."""
     given = [
         table["frame_prefix"]
         for table in _tables_in(call.kwargs.get("parameters"))
@@ -380,7 +380,7 @@ def _frame_prefix(call: Call, context: Context) -> str | None:
     return None
 
 
-def _find_description(findings: Findings, call: Call, context: Context) -> None:
+def find_description(findings: Findings, call: Call, context: Context) -> None:
     """Add the file that robot_state_publisher gets the robot from."""
     parameters = listed(call.kwargs.get("parameters") or [])
     tables = [table for table in _tables_in(parameters) if "robot_description" in table]

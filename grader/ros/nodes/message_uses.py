@@ -8,12 +8,12 @@ these. What is under a condition on its type, or caught, does not count.
 
 import ast
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
 from grader.base.source import Location, Source
-from grader.ros.nodes.node_facts import FieldUse, TypeImport
+from grader.ros.nodes.node_facts import FieldUse, RclpyObject, TypeImport
 from grader.ros.python.bindings import names_bound
 from grader.ros.python.constants import dotted, last_name, make_order
 from grader.ros.python.parse import (
@@ -37,6 +37,17 @@ _ASKING = frozenset({"isinstance", "hasattr", "getattr", "setattr", "type"})
 _MAX_PATH = 12
 _MAX_ITEMS = 100  # of a list that a field is set to
 ITEM = "[]"  # in a path: an item of a list
+# What methods of a node return, and now() of its clock; and what gives the value of a message.
+_GET = "self.get_parameter"
+_RETURNED = {
+    _GET: "rclpy.parameter.Parameter",
+    "self.declare_parameter": "rclpy.parameter.Parameter",
+    "self.get_clock": "rclpy.clock.Clock",
+}
+_NOW = {"rclpy.clock.Clock": "rclpy.time.Time"}
+_ORDERS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)  # == and != take any objects
+_OF_NUMBERS = ("abs", "round", "int", "float", "range", "self.create_timer")
+_LACKS = {"rclpy.parameter.Parameter": ".value", "rclpy.time.Time": ".to_msg()"}
 
 
 class _Typed(NamedTuple):
@@ -117,17 +128,26 @@ _CALLBACKS = {
 
 
 def field_uses(
-    code: Code, parts: Sequence[CodePart], value_of: Callable[[ast.expr, Scope], Value]
+    code: Code,
+    parts: Sequence[CodePart],
+    value_of: Callable[[ast.expr, Scope], Value],
+    node_classes: Collection[Location],
 ) -> Iterator[FieldUse]:
-    """Yield the fields that the functions of a module use."""
+    """Yield the fields that the functions of a module use.
+
+    `node_classes` are where its classes are that have the methods of rclpy's nodes.
+    """
     nodes = every_node(code.tree)
     stored = _count_bindings(nodes)
     given = _types_given(parts, nodes, value_of)
     functions = []
+    own_names = {f"self.{part.name}" for part in parts} | {f"self.{name}" for name in stored}
     for part in parts:
         evaluate = partial(_value_in, part.scope, value_of)
         key = f"self.{part.name}" if part.of is not None else part.name
-        functions.append((part, _FunctionUses(part.node, evaluate, given.get((part.of, key), ()))))
+        is_node = part.of in node_classes and own_names.isdisjoint(_RETURNED)
+        types = given.get((part.of, key), ())
+        functions.append((part, _FunctionUses(part.node, evaluate, types, is_node=is_node)))
     shared: dict[Location | None, dict[str, _Typed]] = {None: {}}
     for part, function in functions:
         for name, typed in function.kept(is_module=isinstance(part.node, ast.Module)):
@@ -234,9 +254,16 @@ class _PlacedUse(NamedTuple):
     path: tuple[str, ...]
     at: Position
     literal: tuple[Value, ...] = ()
+    rclpy: tuple[str, Position] | None = None  # the type of an object of rclpy, and its end
 
     def placed(self, source: Source) -> FieldUse:
-        return FieldUse(self.type, self.path, location_in(source, self.at), self.literal)
+        instead = None
+        if self.rclpy is not None:
+            full, end = self.rclpy
+            name = full.rpartition(".")[2]
+            instead = RclpyObject(name, _LACKS[full], location_in(source, end))
+        at = location_in(source, self.at)
+        return FieldUse(self.type, self.path, at, self.literal, instead)
 
 
 class _FunctionUses:
@@ -247,9 +274,11 @@ class _FunctionUses:
         function: AnyFunction | ast.Module,
         evaluate: _Evaluate,
         given: Sequence[str],
+        *,
+        is_node: bool,
     ) -> None:
-        """`given` are the types of the arguments after self."""
-        self._evaluate = evaluate
+        """`given` are the types of the arguments after self; `is_node`: self is a node of rclpy."""
+        self._evaluate, self._is_node = evaluate, is_node
         self._nodes = sorted(certain_nodes(function), key=make_order)
         self._counts = Counter[str]()
         for node in walk(function):
@@ -322,36 +351,56 @@ class _FunctionUses:
                     path.append(ITEM)
                     node = inner
                 case ast.Call(func=made):
-                    kind = _interface_name(self._evaluate(made)) if dotted(made) else None
+                    kind = self._type_returned(made)
                     return _Typed(kind, tuple(reversed(path))) if kind is not None else None
                 case _:
                     return None
         return None
 
+    def _type_returned(self, function: ast.expr) -> str | None:
+        """Return the type of what a function returns that is called; None if it is not known."""
+        name = dotted(function)
+        if self._is_node and name in _RETURNED:
+            return _RETURNED[name]
+        if isinstance(function, ast.Attribute) and function.attr == "now":
+            owner = self._find_type(function.value)
+            return _NOW.get(owner.type) if owner is not None and not owner.path else None
+        return _interface_name(self._evaluate(function)) if name else None
+
     def uses(self) -> Iterator[_PlacedUse]:
-        """Yield the fields that are used, each with the literal that it is set to."""
-        literals: dict[ast.AST, tuple[Value, ...]] = {}
+        """Yield the fields that are used, each with the value that it is set to."""
+        values: dict[ast.AST, ast.expr] = {}
         for node in self._nodes:
             match node:
                 case ast.Assign(targets=[ast.Attribute() as target], value=value):
-                    literals[target] = self._literal(value)
+                    values[target] = value
                 case ast.Attribute():
-                    yield from self._uses_of_attribute(node, literals.get(node, ()))
+                    yield from self._uses_of_attribute(node, values.get(node))
                 case ast.Call():
                     yield from self._uses_in_call(node)
+            for operand in _operands(node):
+                yield from self._uses_as_number(operand)
+
+    def _uses_as_number(self, operand: ast.expr) -> Iterator[_PlacedUse]:
+        """Yield the use of a parameter in place of its value, as the path of this."""
+        typed = self._find_type(operand)
+        if typed is not None and typed.type == _RETURNED[_GET] and not typed.path:
+            yield self._with_value(
+                _PlacedUse(typed.type, ("value",), make_position(operand)), operand
+            )
 
     def _uses_of_attribute(
-        self, node: ast.Attribute, literal: tuple[Value, ...]
+        self, node: ast.Attribute, value: ast.expr | None
     ) -> Iterator[_PlacedUse]:
         """Yield the use of a field, or of a constant, that an attribute is."""
         typed = self._find_type(node.value)
         if typed is None and node.attr.isupper() and dotted(node.value):
             kind = _interface_name(self._evaluate(node.value))  # a constant of a type
             typed = _Typed(kind) if kind is not None else None
-        if typed is not None:
+        if typed is not None and not typed.type.startswith("rclpy."):
             end = (node.end_col_offset or 0) - len(node.attr) + 1
             at = Position(node.end_lineno or node.lineno, end)
-            yield _PlacedUse(typed.type, (*typed.path, node.attr), at, literal)
+            yield self._with_value(_PlacedUse(typed.type, (*typed.path, node.attr), at), value)
 
     def _uses_in_call(self, call: ast.Call) -> Iterator[_PlacedUse]:
         """Yield the fields that the keywords of a constructor set."""
@@ -362,8 +411,18 @@ class _FunctionUses:
             return
         for keyword in call.keywords:
             if keyword.arg not in (None, "check_fields"):
-                at, literal = make_position(keyword), self._literal(keyword.value)
-                yield _PlacedUse(kind, (keyword.arg or "",), at, literal)
+                use = _PlacedUse(kind, (keyword.arg or "",), make_position(keyword))
+                yield self._with_value(use, keyword.value)
+
+    def _with_value(self, use: _PlacedUse, node: ast.expr | None) -> _PlacedUse:
+        """Return the use of a field with the value that it is set to, as far as it is known."""
+        typed = self._find_type(node) if node is not None else None
+        if node is None or (typed is not None and typed.type not in _LACKS):
+            return use
+        if typed is None:
+            return use._replace(literal=self._literal(node))
+        end = Position(node.end_lineno or node.lineno, (node.end_col_offset or 0) + 1)
+        return use if typed.path else use._replace(rclpy=(typed.type, end))
 
     def _literal(self, node: ast.expr) -> tuple[Value, ...]:
         value = self._evaluate(node)
@@ -372,6 +431,20 @@ class _FunctionUses:
         if isinstance(value, list | tuple) and len(value) <= _MAX_ITEMS:
             return ([*value],)
         return ()
+
+
+def _operands(node: ast.AST) -> Sequence[ast.expr]:
+    """Return what has to be a number for Python to compute a node; a text with % takes any."""
+    match node:
+        case ast.BinOp(left=left, op=operator, right=right) if not isinstance(operator, ast.Mod):
+            return (left, right)
+        case ast.Compare(left=left, ops=operators, comparators=others):
+            return (left, *others) if all(isinstance(each, _ORDERS) for each in operators) else ()
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return (operand,)
+        case ast.Call(func=function, args=[operand, *_]) if dotted(function) in _OF_NUMBERS:
+            return (operand,)
+    return ()
 
 
 def _asked(nodes: Sequence[ast.AST]) -> Iterator[str]:

@@ -3,6 +3,7 @@
 The readers of the languages make these facts; names and parameters are compared by them.
 """
 
+from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
 from grader.base.problems import NO_FIXES, Fixes
@@ -130,19 +131,29 @@ class TypeImport(NamedTuple):
     location: Location
 
 
+class RclpyObject(NamedTuple):
+    """An object of rclpy that code uses where its value is meant."""
+
+    name: str  # Parameter
+    lacks: str  # what gives the value: .value
+    end: Location  # where this has to be written
+
+
 class FieldUse(NamedTuple):
     """A field that code uses of a value whose type is certain.
 
     `type` has the name of the section, as in Python: chat_msgs.srv.Ask.Request; GoalHandle is what
     has the goal as its `request`. `path` are the names of fields down to the one that is used; `[]`
     is an item of a list. `literal` is what the field is set to: one value, or none if it is not
-    known. Items of a list may not be known.
+    known. Items of a list may not be known. `instead` is an object that is used in place of the
+    value that it has; a number of a computation then has the type of that object.
     """
 
     type: str
     path: tuple[str, ...]
     location: Location
     literal: tuple[Value, ...] = ()
+    instead: RclpyObject | None = None
 
 
 class SynchronisedType(NamedTuple):
@@ -170,6 +181,9 @@ class CodeFault(NamedTuple):
     related: Location | None = None
     is_certain: bool = True
     fixes: Fixes = NO_FIXES
+
+
+CodeFaults = Iterator[CodeFault]
 
 
 class NodeFacts(NamedTuple):

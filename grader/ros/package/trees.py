@@ -67,6 +67,13 @@ class TreeEntry:
         return [readable(text) for text in (self.text, self.meant_text) if text is not None]
 
     @property
+    def is_nameless_sensor(self) -> bool:
+        """Whether it is a sensor that Gazebo refuses, with the robot: Sensor.cc of sdformat."""
+        return _is_sensor(self.element) and not any(
+            child.name == "@name" and child.text for child in self.children
+        )
+
+    @property
     def place(self) -> _Place:
         """Where it is written."""
         return self.find_place()

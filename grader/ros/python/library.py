@@ -13,7 +13,8 @@ from functools import cache, lru_cache
 from itertools import chain
 from pathlib import PurePosixPath
 
-from grader.base.names import closest, did_you_mean
+from grader.base.names import closest, did_you_mean, near
+from grader.ros.known.package_tables import python_table
 from grader.ros.known.python_names import MODULES, python_names, python_version
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.python import values as py
@@ -157,7 +158,29 @@ def import_error(
         return f"{module} has no {name!r}" + (
             f": import it from {homes[-1]}" if homes else did_you_mean(name, exports[module])
         )
+    full = module or name
+    of_launch = {name for name in exports if name.startswith("launch")}
+    meant = find_meant_module(full, of_launch | python_table().modules)
+    if meant is not None:
+        return f"there is no module {full!r}" + (f"; did you mean {meant!r}?" if meant else "")
     return _import_error(module, name, releases)
+
+
+def find_meant_module(module: str, known: Collection[str]) -> str | None:
+    """Return the module that one stands for that a package of ROS 2 certainly does not have.
+
+    It is empty if any may be meant. The result is None for a module that may be there: all that
+    launch and launch_ros have is known, of other packages only what is like one that is there.
+    """
+    top, _, below = module.partition(".")
+    if top in python_table().of_ros1:
+        return ""
+    if not below or module in known:
+        return None
+    meant = near(module, [other for other in known if other.startswith(f"{top}.")])
+    is_whole = top in ("launch", "launch_ros") and top in known and not below.startswith("_")
+    is_lacking = f"{top}.{below.partition('.')[0]}" not in known
+    return "" if meant is None and is_whole and is_lacking else meant
 
 
 @lru_cache(maxsize=256)

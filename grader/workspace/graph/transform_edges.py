@@ -11,7 +11,7 @@ from grader.base.text import quoted
 from grader.base.transforms import Transform
 from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
 from grader.ros.known.package_rows import DecidingParameter, find_transforms, package_row
-from grader.ros.launch.launch_model import STATE_PUBLISHER, StartedNode
+from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import (
@@ -73,10 +73,14 @@ def _edges_of_publishers(
 def edges_in(workspace: Workspace, launch: int) -> Iterator[Edge]:
     """Yield the transforms of the nodes and controllers of a launch file. Raises NotDecided."""
     package, file = workspace.launches.roots[launch]
-    workspace.charge(1 + len(file.nodes))
+    workspace.charge(1 + len(file.nodes) + len(file.components))
     publishers = []
+    for component in file.components:
+        loaded = component.node if component.when is not False else None
+        if loaded is not None and loaded.is_state_publisher:
+            publishers.append(loaded)
     for node in file.nodes:
-        if node.executable == STATE_PUBLISHER:
+        if node.is_state_publisher:
             publishers.append(node)
         else:
             yield from _published_by(workspace, launch, package, node)

@@ -8,7 +8,7 @@ computed unless it is asked for.
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 
 from grader.base.errors import NotDecided
@@ -22,6 +22,7 @@ from grader.workspace.index.names_in_xacro import names_in_xacro
 from grader.workspace.index.written_names import (
     Role,
     WrittenName,
+    WrittenNames,
     make_reader,
     span_of_name,
     written_name,
@@ -119,7 +120,7 @@ def _order(name: WrittenName) -> tuple[str, int, int, str, str, str]:
     return at.path, at.line, at.column, name.kind, name.name, name.owner
 
 
-def _names_of_facts(source_of: SourceOf, facts: Iterable[Fact]) -> Iterator[WrittenName]:
+def _names_of_facts(source_of: SourceOf, facts: Iterable[Fact]) -> WrittenNames:
     """Yield the names of facts at what is written of them.
 
     There are none for what no file of the workspace has.
@@ -155,7 +156,7 @@ def _is_of_every_robot(fact: Definition | Use, source: Source) -> bool:
     return source.text.startswith("<link", start)
 
 
-def _owned(workspace: Workspace, names: Sequence[WrittenName]) -> Iterator[WrittenName]:
+def _owned(workspace: Workspace, names: Sequence[WrittenName]) -> WrittenNames:
     """Yield names, those that no robot has with the robots that are meant.
 
     These are the robots of their package, else all that define them.

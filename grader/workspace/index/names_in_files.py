@@ -6,14 +6,19 @@ from contextlib import suppress
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import PARAMETERS, values_in
 from grader.ros.launch.argument_names import argument_names
-from grader.workspace.index.written_names import Role, WrittenName, written_name
+from grader.workspace.index.written_names import (
+    Role,
+    WrittenName,
+    WrittenNames,
+    written_name,
+)
 from grader.workspace.model.workspace import Workspace
 
 _FRAMES_OF_RVIZ = ("Fixed Frame", "Reference Frame", "Target Frame")
 _MAX_TEXT = 4 * 1024 * 1024  # bytes of a file
 
 
-def names_in_launch_files(workspace: Workspace) -> Iterator[WrittenName]:
+def names_in_launch_files(workspace: Workspace) -> WrittenNames:
     """Yield the arguments in launch files, whose owner is the installed file.
 
     It is also the owner of the arguments that includes pass.
@@ -30,7 +35,7 @@ def names_in_launch_files(workspace: Workspace) -> Iterator[WrittenName]:
                 yield written_name(source, span, "launch argument", argument.name, role, owner)
 
 
-def names_in_yaml(workspace: Workspace, nodes: Collection[str]) -> Iterator[WrittenName]:
+def names_in_yaml(workspace: Workspace, nodes: Collection[str]) -> WrittenNames:
     """Yield what sections of parameters are for, and the frames of RViz files.
 
     The sections are those of controllers and of these nodes.
@@ -70,7 +75,7 @@ def _name_of_key(mapping: YamlNode, key: str, kind: str, name: str) -> WrittenNa
     return written_name(source, (end - len(name), end), kind, name, "use")
 
 
-def _frames_of_rviz(tree: YamlNode) -> Iterator[WrittenName]:
+def _frames_of_rviz(tree: YamlNode) -> WrittenNames:
     for value in values_in(tree):
         name = value.node.text
         if value.keys and value.keys[-1] in _FRAMES_OF_RVIZ and name and name[0] != "<":

@@ -15,6 +15,7 @@ from grader.workspace.index.written_names import (
     Role,
     Span,
     WrittenName,
+    WrittenNames,
     span_of_name,
     written_name,
 )
@@ -41,7 +42,7 @@ class PackageNames:
     def __init__(self, workspace: Workspace, source_of: SourceOf) -> None:
         self._workspace, self._source_of = workspace, source_of
 
-    def names(self) -> Iterator[WrittenName]:
+    def names(self) -> WrittenNames:
         """Yield the names. Raises NotDecided."""
         for package in self._workspace.packages:
             yield from self._packages(package)
@@ -59,7 +60,7 @@ class PackageNames:
 
     def _written(
         self, at: Location, kind: str, name: str, role: Role, owner: str = ""
-    ) -> Iterator[WrittenName]:
+    ) -> WrittenNames:
         """Yield a name in what begins at a place, if it is written there."""
         source = self._source_of(at.path)
         if source is None:
@@ -77,7 +78,7 @@ class PackageNames:
         if span is not None:
             yield written_name(source, span, kind, name, role, owner)
 
-    def _packages(self, package: Package) -> Iterator[WrittenName]:
+    def _packages(self, package: Package) -> WrittenNames:
         """Yield the name of a package, and those of the packages that its files name."""
         manifest = package.manifest
         if manifest is not None and manifest.name:
@@ -89,7 +90,7 @@ class PackageNames:
         for used in used_packages(self._workspace, package):
             yield from self._written(used.location, "package", used.name, "use")
 
-    def _programs(self, package: Package) -> Iterator[WrittenName]:
+    def _programs(self, package: Package) -> WrittenNames:
         """Yield the programs of a package, with the functions that they call."""
         code = self._workspace.code.by_package.get(package.name)
         for program in code.programs if code is not None else ():
@@ -102,7 +103,7 @@ class PackageNames:
                 name, at = target.program or target.name, setup.location(target.at)
                 yield from self._written(at, _PROGRAM, name, "definition", package.name)
 
-    def _function(self, package: Package, program: NodeProgram) -> Iterator[WrittenName]:
+    def _function(self, package: Package, program: NodeProgram) -> WrittenNames:
         """Yield the function of a program, in its file and where setup.py names it."""
         path = package.path(program.path)
         source = self._source_of(path) if program.path else None
@@ -127,7 +128,7 @@ class PackageNames:
             yield written_name(source, span, "function", used[0], "definition", package.name)
             yield written_name(setup, used.span(), "function", used[0], "use", package.name)
 
-    def _types(self, package: Package) -> Iterator[WrittenName]:
+    def _types(self, package: Package) -> WrittenNames:
         """Yield the types of messages that a package defines and uses."""
         interfaces = self._workspace.code.interfaces[package.name]
         for name, defined in interfaces.types.items():
@@ -149,7 +150,7 @@ class PackageNames:
 
     def _type_of_field(
         self, package: Package, kind: FieldType, at: Location | None
-    ) -> Iterator[WrittenName]:
+    ) -> WrittenNames:
         source = self._source_of(at.path) if at is not None else None
         owner = kind.package or package.name
         if source is None or at is None or kind.name[:1].islower():
@@ -172,7 +173,7 @@ class PackageNames:
                 types[package, part, header.lower()] = f"{package}/{part}/{last}"
         return types
 
-    def _imported(self, name: str, at: Location) -> Iterator[WrittenName]:
+    def _imported(self, name: str, at: Location) -> WrittenNames:
         """Yield a type where Python imports it, and where the file uses it."""
         source, last = self._source_of(at.path), name.rpartition(".")[2]
         if source is None or not source.path.endswith(".py"):
@@ -181,7 +182,7 @@ class PackageNames:
         for match in word.finditer(source.text, source.start_offset(at)):
             yield written_name(source, match.span(), _TYPE, name.replace(".", "/"), "use")
 
-    def _file(self, named: PathInFile) -> Iterator[WrittenName]:
+    def _file(self, named: PathInFile) -> WrittenNames:
         """Yield a file of a package, and where the file that names its path writes it."""
         path = self._workspace.installed.find_source(named.path)
         source = self._source_of(named.location.path)
@@ -191,7 +192,7 @@ class PackageNames:
         for span in _spans_of_path(source, named):
             yield written_name(source, span, _FILE, path, "use")
 
-    def _plugins(self) -> Iterator[WrittenName]:
+    def _plugins(self) -> WrittenNames:
         """Yield the classes of pluginlib: where they are described and written, and their names."""
         for described in described_classes(self._workspace):
             source = self._source_of(described.location.path)
@@ -209,7 +210,7 @@ class PackageNames:
             yield from self._written(named.location, "plugin", named.name, "use")
         yield from self._components()
 
-    def _components(self) -> Iterator[WrittenName]:
+    def _components(self) -> WrittenNames:
         """Yield the classes and packages of the components that launch files load."""
         for _, launch in self._workspace.launches.roots:
             for component in launch.components:
@@ -219,7 +220,7 @@ class PackageNames:
                     yield from self._written(at, "package", component.package, "use")
                     yield from self._class(component.package, name, name)
 
-    def _class(self, package: str, kind: str, name: str) -> Iterator[WrittenName]:
+    def _class(self, package: str, kind: str, name: str) -> WrittenNames:
         """Yield the class of C++ that a plug-in is."""
         cls = re.escape(kind.rpartition("::")[2])
         pattern = re.compile(

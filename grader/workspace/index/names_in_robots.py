@@ -1,12 +1,16 @@
 """The names in the elements of robots: links, joints and materials, defined and used."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 from grader.base import markup
 from grader.ros.package.robot_file import Read
 from grader.ros.xml.parsing import Element
-from grader.workspace.index.written_names import Role, WrittenName, written_name
+from grader.workspace.index.written_names import (
+    Role,
+    WrittenNames,
+    written_name,
+)
 
 
 class _Named(NamedTuple):
@@ -34,7 +38,7 @@ _TAGS = frozenset(tag for _, tag, _ in _NAMED)
 _ATTRIBUTES = tuple(dict.fromkeys(attribute for _, _, attribute in _NAMED))
 
 
-def names_in_robots(urdfs: Sequence[Read]) -> Iterator[WrittenName]:
+def names_in_robots(urdfs: Sequence[Read]) -> WrittenNames:
     """Yield the names in robots, each robot with its path as the owner.
 
     Names of xacro are yielded where they are written, and as they are after expansion.
@@ -46,7 +50,7 @@ def names_in_robots(urdfs: Sequence[Read]) -> Iterator[WrittenName]:
             yield from _names_in_robot(urdf, root)
 
 
-def _names_in_robot(urdf: Read, root: Element) -> Iterator[WrittenName]:
+def _names_in_robot(urdf: Read, root: Element) -> WrittenNames:
     joints = {joint.get("name") for joint in root.iterchildren("joint")}
     for tag, element in enumerate(root.iter("*")):
         if element.tag not in _TAGS or element.getparent() is None:

@@ -16,7 +16,12 @@ from grader.ros.python.values import EvaluationFails, Undetermined
 from grader.ros.xacro.tags import HANDLERS
 from grader.ros.xacro.xacro_nodes import XacroNode, read_nodes, walk
 from grader.ros.xml.parsing import XMLSyntaxError
-from grader.workspace.index.written_names import Role, Span, WrittenName, written_name
+from grader.workspace.index.written_names import (
+    Role,
+    Span,
+    WrittenNames,
+    written_name,
+)
 
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _PIECE = re.compile(
@@ -63,7 +68,7 @@ class _Document(NamedTuple):
     macros: tuple[_Macro, ...]
 
 
-def names_in_xacro(urdfs: Sequence[Read], others: Sequence[Source]) -> Iterator[WrittenName]:
+def names_in_xacro(urdfs: Sequence[Read], others: Sequence[Source]) -> WrittenNames:
     """Yield the names of xacro in the files of each robot, and then in other files.
 
     The owner is the path of the robot; each of the other files is on its own.
@@ -84,7 +89,7 @@ def names_in_xacro(urdfs: Sequence[Read], others: Sequence[Source]) -> Iterator[
             yield from _names_of_owner([known[source.path]], source.path)
 
 
-def _names_of_owner(documents: Sequence[_Document], owner: str) -> Iterator[WrittenName]:
+def _names_of_owner(documents: Sequence[_Document], owner: str) -> WrittenNames:
     """Yield the names in files that are expanded together."""
     scopes = {macro.name: macro.scope for document in documents for macro in document.macros}
     properties: set[str] = set()
@@ -97,9 +102,7 @@ def _names_of_owner(documents: Sequence[_Document], owner: str) -> Iterator[Writ
         yield from _names_in_expressions(document, owner, properties)
 
 
-def _names_of_tags(
-    document: _Document, owner: str, scopes: Mapping[str, str]
-) -> Iterator[WrittenName]:
+def _names_of_tags(document: _Document, owner: str, scopes: Mapping[str, str]) -> WrittenNames:
     """Yield the names of a file whose kind is known; `scopes` are those of macros."""
     for used in document.names:
         scope = used.scope
@@ -114,7 +117,7 @@ def _names_of_tags(
 
 def _names_in_expressions(
     document: _Document, owner: str, properties: Collection[str]
-) -> Iterator[WrittenName]:
+) -> WrittenNames:
     """Yield the names in expressions of a file: parameters of the macro around, or properties."""
     source = document.source
     for used in document.loose:

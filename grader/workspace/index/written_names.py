@@ -43,6 +43,9 @@ class WrittenName(NamedTuple):
         return at.path == path and start <= (line, column) <= end
 
 
+WrittenNames = Iterator[WrittenName]
+
+
 def written_name(
     source: Source, span: Span, kind: str, name: str, role: Role, owner: str = ""
 ) -> WrittenName:

@@ -195,10 +195,7 @@ def command_interfaces(
 
 
 def state_interfaces(robots: Sequence[KnownRobot]) -> Mapping[str, frozenset[str]]:
-    """Return the state interfaces of the joints of hardware that has those that are listed.
-
-    Joints without any are not among them.
-    """
+    """Return the state interfaces of the joints of hardware that has those that are listed."""
     interfaces: dict[str, frozenset[str]] = {}
     for robot in robots:
         for system in robot.systems:
@@ -206,8 +203,7 @@ def state_interfaces(robots: Sequence[KnownRobot]) -> Mapping[str, frozenset[str
             for joint in system.iterchildren("joint") if plugin in _LISTED_HARDWARE else ():
                 name = joint.get("name", "")
                 added = [each.get("name", "") for each in joint.iterchildren("state_interface")]
-                if added:
-                    interfaces[name] = interfaces.get(name, frozenset()).union(added)
+                interfaces[name] = interfaces.get(name, frozenset()).union(added)
     return interfaces
 
 

@@ -8,7 +8,12 @@ from grader.ros.installation.places import PREFIX
 from grader.ros.known.package_rows import launch_arguments
 from grader.ros.launch.launch_model import Launch
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Definition, Fact, Open, Use
+from grader.workspace.rules.names import (
+    Definition,
+    Facts,
+    Open,
+    Use,
+)
 
 _CONFIGURATION = re.compile(r"LaunchConfiguration\(\s*[\"'](\w+)[\"']|\$\(var (\w+)")
 _MAX_LAUNCH = 128 * 1024  # bytes, as launch files are read
@@ -22,7 +27,7 @@ _XACRO_ARGUMENT = re.compile(
 )
 
 
-def argument_facts(workspace: Workspace) -> Iterator[Fact]:
+def argument_facts(workspace: Workspace) -> Facts:
     """Yield the arguments that launch files and xacro declare, or that others pass.
 
     Includes and Command pass them.
@@ -45,7 +50,7 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _xacro_arguments(workspace)
 
 
-def _included_arguments(workspace: Workspace, launch: Launch, owner: str) -> Iterator[Fact]:
+def _included_arguments(workspace: Workspace, launch: Launch, owner: str) -> Facts:
     """Yield the arguments of outside launch files, which a launch file passes on.
 
     It passes them on by including files outside the workspace.
@@ -70,7 +75,7 @@ def _passed_arguments(workspace: Workspace) -> Iterator[Use]:
                     yield Use("launch argument", name, passed.location, said, path, optional=True)
 
 
-def _xacro_arguments(workspace: Workspace) -> Iterator[Fact]:
+def _xacro_arguments(workspace: Workspace) -> Facts:
     """Yield the arguments that xacro files declare, and those that launch files pass to xacro."""
     for source in workspace.robots.xacro_sources:
         for match in _XACRO_ARGUMENT.finditer(source.text):

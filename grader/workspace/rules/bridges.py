@@ -24,8 +24,9 @@ from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     corrections,
     cost_of_guess,
     warning,
@@ -33,7 +34,6 @@ from grader.workspace.rules.names import (
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
     NO_TOPIC,
-    SIMILAR,
     Rule,
 )
 
@@ -50,7 +50,7 @@ _DERIVED = ("points", "image", "depth_image", "camera_info", "labels_map", "colo
 _WITHOUT_SENSORS = ("sun", "ground_plane", "ground plane")
 
 
-def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
+def bridge_facts(workspace: Workspace) -> Facts:
     """Yield rows with types or directions that no bridge has, missing topics and clocks.
 
     The topics are those that Gazebo does not have.
@@ -70,7 +70,6 @@ _BRIDGE_FILE = Rule(
     "bridge-file",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A file of bridge rows is a list in YAML.",
     why=(
         "The bridge cannot read its rows from the file. It ends or bridges nothing, so no topic"
@@ -93,7 +92,7 @@ _BRIDGE_FILE = Rule(
 )
 
 
-def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
+def _unreadable_files(workspace: Workspace) -> Mismatches:
     """Yield the files that bridges get and that cannot be parsed, or are no lists."""
     for path in bridge_files(workspace):
         tree = workspace.installed.yaml.get(path)
@@ -115,7 +114,7 @@ class _GazeboTopics(NamedTuple):
     are_expanded: bool  # whether the namespace may be put before the names of rows
 
 
-def _compared_rows(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Fact]:
+def _compared_rows(workspace: Workspace, rows: list[BridgeRow]) -> Facts:
     """Yield what is wrong with rows, by the topics that Gazebo has."""
     gz = _topics_of_gazebo(workspace, {row.gz for row in rows})
     for row in rows:
@@ -187,7 +186,6 @@ _SENSOR_TOPIC = Rule(
     "sensor-topic",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "The sensor whose messages a bridge takes has a <topic>.",
     why=(
         "Gazebo makes a topic from the names of world, model, link and sensor. The bridge waits"
@@ -210,7 +208,7 @@ Node(package='ros_gz_bridge', executable='parameter_bridge',
 )
 
 
-def _without_topic(row: BridgeRow, nameless: Mapping[str, _NamelessSensor]) -> Iterator[Mismatch]:
+def _without_topic(row: BridgeRow, nameless: Mapping[str, _NamelessSensor]) -> Mismatches:
     """Yield that the only sensor with the messages of a row has no <topic>.
 
     A model that is not in the workspace may publish it.
@@ -230,7 +228,6 @@ _BRIDGE_ROW = Rule(
     "bridge-row",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A row of a bridge has the keys that the bridge needs.",
     why=(
         "The bridge prints an error for the row and ignores it. Other rows work, so only this "
@@ -253,7 +250,7 @@ _BRIDGE_ROW = Rule(
 )
 
 
-def _incomplete_rows(workspace: Workspace) -> Iterator[Mismatch]:
+def _incomplete_rows(workspace: Workspace) -> Mismatches:
     """Yield the rows in files of bridges that name a topic and lack a key.
 
     A bridge leaves out such a row.
@@ -273,7 +270,6 @@ _BRIDGE_ARGUMENT = Rule(
     "bridge-argument",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "An argument of a bridge names a topic with its types.",
     why=(
         "parameter_bridge prints its usage and ends at the first argument that it cannot parse."
@@ -290,7 +286,7 @@ Node(
 )
 
 
-def _other_arguments(workspace: Workspace) -> Iterator[Mismatch]:
+def _other_arguments(workspace: Workspace) -> Mismatches:
     """Yield the first argument of a bridge that is no topic with types, with which it ends."""
     for _, node in workspace.launches.nodes:
         is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
@@ -308,7 +304,6 @@ _BRIDGE_TYPE = Rule(
     "bridge-type",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A bridge converts the types of its rows, and a row has the type of Gazebo's topic.",
     why=(
         "The bridge prints 'Failed to create a bridge for topic', or receives nothing because "
@@ -334,7 +329,7 @@ Node(
 )
 
 
-def _exchanged_types(workspace: Workspace) -> Iterator[Mismatch]:
+def _exchanged_types(workspace: Workspace) -> Mismatches:
     """Yield the arguments of bridges that have the type of Gazebo in place of that of ROS."""
     for _, node in workspace.launches.nodes:
         for word in node.arguments or () if node.package == BRIDGE else ():
@@ -360,7 +355,6 @@ _BRIDGE_DIRECTION = Rule(
     "bridge-direction",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A row of a bridge goes in the direction of its messages.",
     why=(
         "The bridge then waits on the side where nothing publishes. ros2 topic list shows the "
@@ -393,7 +387,7 @@ def _no_direction(row: BridgeRow) -> Mismatch:
     return Mismatch(_BRIDGE_DIRECTION, message, at, None, row.is_used, either)
 
 
-def _no_type(workspace: Workspace, row: BridgeRow) -> Iterator[Mismatch]:
+def _no_type(workspace: Workspace, row: BridgeRow) -> Mismatches:
     """Yield that no bridge has a type like the one of a row in ROS, and which one it may mean."""
     types = [kind.replace(".", "/") for kind in bridge_table().types]
     written = row.ros_type.replace(".", "/")
@@ -438,7 +432,7 @@ def _files_named(workspace: Workspace) -> Iterator[Any]:
             yield values.get("config_file")
 
 
-def _conversions(row: BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
+def _conversions(row: BridgeRow, gazebo_types: set[str]) -> Mismatches:
     """Yield that no bridge converts a type into the other one.
 
     Where the topics of Gazebo have the type of the row, the other one is wrong.
@@ -465,7 +459,7 @@ def _conversions(row: BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
     yield Mismatch(_BRIDGE_TYPE, message, at, None, row.is_used, either)
 
 
-def _clock_to_gazebo(row: BridgeRow) -> Iterator[Mismatch]:
+def _clock_to_gazebo(row: BridgeRow) -> Mismatches:
     """Yield that a bridge sends the time of ROS to Gazebo."""
     if row.gz_type == "gz.msgs.Clock" and row.direction == TO_GAZEBO:
         message = (
@@ -491,7 +485,7 @@ def _wrong_direction(
     return Mismatch(_BRIDGE_DIRECTION, message, at, related, row.is_used, either)
 
 
-def _opposite_direction(row: BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
+def _opposite_direction(row: BridgeRow, topics: list[GazeboTopic]) -> Mismatches:
     """Yield that a topic of Gazebo is bridged in the other direction than its messages go."""
     if len({topic.is_input for topic in topics}) != 1:
         return
@@ -507,7 +501,7 @@ def _opposite_direction(row: BridgeRow, topics: list[GazeboTopic]) -> Iterator[M
         yield _wrong_direction(row, message, right, at)
 
 
-def _type_of_topic(row: BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
+def _type_of_topic(row: BridgeRow, topics: list[GazeboTopic]) -> Mismatches:
     """Yield that a topic of Gazebo has messages of another type.
 
     That no bridge converts the type is another mistake.
@@ -525,7 +519,6 @@ _BRIDGE_TOPIC = Rule(
     "bridge-topic",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "Gazebo has the topic of a row of a bridge.",
     why=(
         "The bridge waits for a Gazebo topic without a publisher or reader. ros2 topic list "
@@ -551,9 +544,7 @@ Node(
 )
 
 
-def _not_there(
-    row: BridgeRow, unused: Sequence[GazeboTopic], *, is_known: bool
-) -> Iterator[Mismatch]:
+def _not_there(row: BridgeRow, unused: Sequence[GazeboTopic], *, is_known: bool) -> Mismatches:
     """Yield that Gazebo does not have the topic of a row.
 
     Nothing is said where a row has one of the same type that Gazebo has. A sensor that is not
@@ -582,7 +573,6 @@ _BRIDGE_CLOCK = Rule(
     "bridge-clock",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A bridge takes the clock from Gazebo.",
     why=(
         "Without /clock the time of a node with use_sim_time stays 0: timers on its clock never"
@@ -606,7 +596,7 @@ Node(package='rover', executable='joystick', parameters=[{'use_sim_time': True}]
 )
 
 
-def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]:
+def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Mismatches:
     """Yield that a node waits for the time of the simulation, and no bridge takes it from Gazebo.
 
     Nothing is said where a bridge, or an included launch file, may have more rows.

@@ -1,14 +1,17 @@
 """Plugins of Gazebo Classic: whether robots and models use those of ROS 2, and their elements."""
 
-from collections.abc import Iterator
-
 from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.ros.known.gazebo_rows import gazebo
 from grader.ros.xml.parsing import Element
 from grader.workspace.graph.gazebo_topics import roots
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_WORD,
     Rule,
@@ -18,7 +21,7 @@ from grader.workspace.rules.used_packages import OF_TESTS
 _LIBRARY, _RATE = "libgazebo_ros_", "updateRate"
 
 
-def classic_plugin_facts(workspace: Workspace) -> Iterator[Fact]:
+def classic_plugin_facts(workspace: Workspace) -> Facts:
     """Yield the plugins of ROS 1, and their elements that plugins of ROS 2 do not read.
 
     A library that the workspace builds may read any element, and one beside the element of ROS 2
@@ -44,7 +47,6 @@ _CLASSIC_PLUGIN = Rule(
     "classic-plugin",
     "words",
     NO_WORD,
-    NO_WORD,
     "The plugins of Gazebo Classic and their elements are those of ROS 2.",
     why=(
         "Gazebo Classic does not load a library of ROS 1, and plugins ignore elements that they"
@@ -68,7 +70,7 @@ _CLASSIC_PLUGIN = Rule(
 )
 
 
-def _wrong_plugin(plugin: Element, library: str, at: Location) -> Iterator[Mismatch]:
+def _wrong_plugin(plugin: Element, library: str, at: Location) -> Mismatches:
     """Yield that a plugin is one of ROS 1, or has elements of ROS 1."""
     classic = gazebo().classic
     if library in classic.libraries:

@@ -1,12 +1,17 @@
 """Code: what stops own nodes, or keeps them from doing anything."""
 
-from collections.abc import Iterator
-
 from grader.ros.launch.valid_names import is_node_name, why_no_topic
 from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.package.found_problems import syntax_fixes
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, Undecided, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    Mismatches,
+    Undecided,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     MAY_WAIT,
     NO_RUN,
@@ -17,7 +22,6 @@ _CODE_SYNTAX = Rule(
     "code-syntax",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "The Python modules of nodes have no syntax errors.",
     why=(
         "Python ends with a SyntaxError before the node is created, so ros2 launch reports that"
@@ -38,7 +42,6 @@ _NAME_BINDING = Rule(
     "name-binding",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "Names and attributes are defined, and format strings get their arguments.",
     why=(
         "Python finds the mistake only when the line runs. The node then stops with a "
@@ -49,11 +52,34 @@ _NAME_BINDING = Rule(
     frame="tick/pilot.py",
 )
 
+_VALUE_OBJECT = Rule(
+    "value-object",
+    "code",
+    NO_RUN,
+    "Messages and computations get the values of parameters and times, not these objects.",
+    why=(
+        "get_parameter() and declare_parameter() return a Parameter, now() a Time of rclpy. Python "
+        "raises an error where a number or a field of a message is meant."
+    ),
+    wrong="""
+def __init__(self):
+    super().__init__('pilot')
+    self.declare_parameter('speed', 0.5)
+    self.fast = 2 * self.get_parameter('speed')
+""",
+    right="""
+def __init__(self):
+    super().__init__('pilot')
+    self.declare_parameter('speed', 0.5)
+    self.fast = 2 * self.get_parameter('speed').value
+""",
+    frame="pilot.py",
+)
+
 _CALLBACK_CALL = Rule(
     "callback-call",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A callback is given as a function, and not called.",
     why=(
         "The function runs once, while the node is created. ROS 2 gets its result, mostly None,"
@@ -82,7 +108,6 @@ _CALLBACK_PARAMETERS = Rule(
     "callback-parameters",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A callback takes the arguments that it is called with.",
     why=(
         "rclpy raises a TypeError at the first message, request or timer event, and the node "
@@ -112,7 +137,6 @@ _CALL_ARGUMENTS = Rule(
     "call-arguments",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A call of rclpy or tf2_ros has the arguments that it takes.",
     why=(
         "Python raises a TypeError at the call, such as 'missing 1 required positional "
@@ -135,7 +159,6 @@ _SERVICE_RESPONSE = Rule(
     "service-response",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "The callback of a service or action returns its response or result on every path.",
     why=(
         "rclpy has nothing to send at the end of the call. A service raises a TypeError that "
@@ -165,7 +188,6 @@ _CONSTRUCTOR_ORDER = Rule(
     "constructor-order",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A node is used after super().__init__().",
     why=(
         "Before that call the object has no publishers, parameters or logger yet. Python raises"
@@ -187,7 +209,6 @@ def __init__(self):
 _GOAL_STATE = Rule(
     "goal-state",
     "code",
-    MAY_WAIT,
     MAY_WAIT,
     "An action server accepts goals, and the function that executes one sets its state.",
     why=(
@@ -214,7 +235,6 @@ _ACTION_RESULT = Rule(
     "action-result",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "The result of an action is the field result of its answer.",
     why=(
         "get_result_async() returns the status and the result in one object. Python raises an "
@@ -235,7 +255,6 @@ _NODE_SPINS = Rule(
     "node-spins",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A node with callbacks is spun.",
     why=(
         "Without spinning, the executor calls no callback: timers never fire and no message "
@@ -256,7 +275,6 @@ _RCLPY_INIT = Rule(
     "rclpy-init",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A node is made after rclpy.init().",
     why=(
         "rclpy raises an error because rclpy.init() has not been called, and the program ends "
@@ -274,7 +292,6 @@ _CALLBACK_WAIT = Rule(
     "callback-wait",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A callback waits for no other callback.",
     why=(
         "The answer is read only after the callback ends, and the callback waits for it: the "
@@ -294,7 +311,6 @@ future.add_done_callback(lambda done: self.get_logger().info(done.result().messa
 _CALLBACK_SLEEP = Rule(
     "callback-sleep",
     "code",
-    MAY_WAIT,
     MAY_WAIT,
     "A callback does not sleep.",
     why=(
@@ -332,7 +348,6 @@ _ENTITY_KEPT = Rule(
     "entity-kept",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A node keeps what it makes.",
     why=(
         "A timer, subscription or listener that no variable holds is destroyed at the end of "
@@ -351,7 +366,6 @@ _PUBLISHER_ACTIVATED = Rule(
     "publisher-activated",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A node with a lifecycle activates its publishers.",
     why=(
         "The publisher drops each message and warns once that it is not activated. ros2 topic "
@@ -382,7 +396,6 @@ _BUFFER_LISTENER = Rule(
     "buffer-listener",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A buffer of transforms has a listener.",
     why=(
         "No transform reaches the buffer, so each lookup reports that the frame does not exist,"
@@ -405,7 +418,6 @@ _ROTATION_SET = Rule(
     "rotation-set",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A transform that is sent has a rotation.",
     why=(
         "tf2 ignores a transform with a quaternion of zeros and prints "
@@ -442,7 +454,6 @@ _COMPONENT_MACRO = Rule(
     "component-macro",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A source file registers the component that CMakeLists.txt names.",
     why=(
         "The library then has no factory for the class. A container fails to load the "
@@ -463,7 +474,6 @@ _PROGRAM_MAIN = Rule(
     "program-main",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A program has a main(), and a script calls it.",
     why=(
         "The linker stops the build with 'undefined reference to main', and no program is "
@@ -483,7 +493,6 @@ _RCLCPP_INIT = Rule(
     "rclcpp-init",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A C++ program makes its nodes after rclcpp::init().",
     why=(
         "rclcpp throws an exception when the node is created without a valid context, and the "
@@ -515,7 +524,6 @@ _COMPONENT_CONSTRUCTOR = Rule(
     "component-constructor",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A component has a constructor that takes NodeOptions.",
     why=(
         "The registration macro creates the node from NodeOptions. The compiler finds no "
@@ -559,7 +567,7 @@ RCLCPP_COMPONENTS_REGISTER_NODE(rover::Drive)
 _RULES_BY_NAME = {rule.name: rule for rule in [*globals().values()] if isinstance(rule, Rule)}
 
 
-def code_facts(workspace: Workspace) -> Iterator[Fact]:
+def code_facts(workspace: Workspace) -> Facts:
     """Yield what is wrong in the code of nodes."""
     for package, nodes in workspace.code.by_package.items():
         if nodes.has_more_faults:
@@ -590,7 +598,6 @@ _NAME_VALID = Rule(
     "name-valid",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "ROS 2 accepts the names of nodes, topics, services and actions in code.",
     why=(
         "rcl refuses the name: rclpy and rclcpp raise an exception that shows the invalid "
@@ -610,7 +617,7 @@ def __init__(self):
 )
 
 
-def _invalid_names(node: NodeFacts) -> Iterator[Mismatch]:
+def _invalid_names(node: NodeFacts) -> Mismatches:
     """Yield the names of a node, and of what it opens, that ROS 2 refuses.
 
     They are checked as they are written in the code, before a launch file gives others.

@@ -26,7 +26,12 @@ from grader.workspace.graph.started_controllers import defined_controllers, spaw
 from grader.workspace.graph.unread_ends import may_publish_type
 from grader.workspace.model.launches import CONTROL_NODE, MANAGER
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
     Rule,
@@ -45,7 +50,7 @@ _BRIDGES = (BRIDGE, "ros_ign_bridge")
 _WORD = re.compile(r"[a-z0-9]+")
 
 
-def companion_facts(workspace: Workspace) -> Iterator[Fact]:
+def companion_facts(workspace: Workspace) -> Facts:
     """Yield nodes whose companions are missing or are there twice.
 
     A launch file may be one of several that a person starts: what is missing is missing in all of
@@ -67,7 +72,6 @@ _NODE_NAME = Rule(
     "node-name",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "The nodes of a launch file have different names.",
     why=(
         "ros2 node list warns of an exact name that two nodes share. A parameter or service "
@@ -84,7 +88,7 @@ Node(package='turtlesim', executable='turtlesim_node', name='sim2'),
 )
 
 
-def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
+def _same_names(workspace: Workspace) -> Mismatches:
     """Yield the nodes that a launch file gives a name which it gives another one."""
     first: dict[tuple[int, str], RunningNode] = {}
     for node in make_graph(workspace).nodes:
@@ -113,7 +117,6 @@ _ONE_JOINT_STATE = Rule(
     "one-joint-state",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "One program publishes the positions of the joints.",
     why=(
         "robot_state_publisher uses each message that arrives. The links jump between the "
@@ -139,7 +142,7 @@ joint_state_broadcaster:
 )
 
 
-def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
+def _two_joint_state_publishers(workspace: Workspace) -> Mismatches:
     """Yield the programs that publish joint states beside a controller that does."""
     broadcasters = _broadcasters(workspace)
     for launch, node in workspace.launches.launched:
@@ -159,7 +162,6 @@ def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
 _JOINT_STATES = Rule(
     "joint-states",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "Something publishes the positions of the joints.",
     why=(
@@ -186,7 +188,7 @@ Node(package='joint_state_publisher', executable='joint_state_publisher'),
 )
 
 
-def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
+def _no_joint_states(workspace: Workspace) -> Mismatches:
     """Yield a robot with moving joints whose positions nothing publishes.
 
     Joints that follow others have no positions of their own. Nothing is said where there may be
@@ -253,7 +255,6 @@ _ROBOT_PUBLISHED = Rule(
     "robot-published",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "robot_state_publisher gives the controller manager the robot.",
     why=(
         "The controller manager waits for the topic robot_description and loads no hardware. "
@@ -271,7 +272,7 @@ Node(package='controller_manager', executable='ros2_control_node'),
 )
 
 
-def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
+def _no_robot(workspace: Workspace) -> Mismatches:
     """Yield a controller manager that waits for a robot which nothing publishes."""
     managers = []
     for _, node in workspace.launches.nodes:
@@ -302,7 +303,6 @@ _CLOCK_PUBLISHED = Rule(
     "clock-published",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "Something publishes the clock of nodes with use_sim_time.",
     why=(
         "The time of the nodes stays 0: timers on their clock never fire, and tf2 finds no "
@@ -315,7 +315,7 @@ Node(package='rplidar_ros', executable='rplidar_node', parameters=[{'use_sim_tim
 )
 
 
-def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:
+def _no_clock(workspace: Workspace) -> Mismatches:
     """Yield that nodes wait for the time of a simulation that nothing publishes."""
     at = next(_sim_time(workspace), None)
     if at is None or _may_have_clock(workspace):
@@ -420,7 +420,6 @@ _SIMULATION_TIME = Rule(
     "simulation-time",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "The nodes of a simulation use its time.",
     why=(
         "Such a node compares simulated stamps with the time of the machine. It takes messages "
@@ -439,7 +438,7 @@ Node(package='robot_localization', executable='ekf_node', parameters=[{'use_sim_
 )
 
 
-def _wall_time(workspace: Workspace) -> Iterator[Mismatch]:
+def _wall_time(workspace: Workspace) -> Mismatches:
     """Yield that nodes compare times in a simulation whose clock they do not use."""
     rows = [row for row in bridge_rows(workspace) if row.is_published and row.ros_type == _CLOCK]
     if not rows or _is_mentioned(workspace, (_TIME,)):

@@ -26,7 +26,6 @@ from grader.workspace.rules.names import (
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
     NO_PROGRAM,
-    SIMILAR,
     Rule,
 )
 
@@ -74,7 +73,6 @@ _COMPONENT_REGISTERED = Rule(
     "component-registered",
     "programs",
     NO_PROGRAM,
-    SIMILAR,
     "CMakeLists.txt of the package registers the component that a launch file loads.",
     why=(
         "The container reports that it did not find the class, and the node is missing. The "
@@ -134,7 +132,6 @@ def _may_register(text: str) -> bool:
 _CONTAINER_STARTED = Rule(
     "container-started",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "The container of a component is started.",
     why=(

@@ -12,7 +12,7 @@ from grader.ros.known.package_rows import (
     controller_types,
     is_known_controller,
 )
-from grader.ros.known.releases import releases_with
+from grader.ros.known.releases import other_name, releases_with
 from grader.workspace.graph.compared_robots import robots_for_file
 from grader.workspace.graph.started_controllers import (
     Controller,
@@ -31,14 +31,14 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Correction,
     Definition,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     Use,
     corrections,
 )
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -46,7 +46,7 @@ _LIKENESS = 0.85  # of a type to one of another package
 _MAX_KEYS = 2  # of joints; steering controllers have those of an older release as well
 
 
-def controller_facts(workspace: Workspace) -> Iterator[Fact]:
+def controller_facts(workspace: Workspace) -> Facts:
     """Yield the controllers, types, sections and interfaces in YAML files, and those of actions."""
     controllers = list(defined_controllers(workspace))
     if not controllers:
@@ -77,7 +77,6 @@ _CONTROLLER_HARDWARE = Rule(
     "controller-hardware",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A robot with a controller manager has <ros2_control>.",
     why=(
         "The controller manager parses <ros2_control> for its hardware. Without the element it "
@@ -103,7 +102,7 @@ Node(package='rover', executable='motors'),  # or describe the hardware in <ros2
 )
 
 
-def _no_hardware(workspace: Workspace) -> Iterator[Mismatch]:
+def _no_hardware(workspace: Workspace) -> Mismatches:
     """Yield that a controller manager is started, while no robot has <ros2_control>.
 
     Nothing is said where a robot may have more than is read.
@@ -122,7 +121,6 @@ _CONTROLLER_TYPE = Rule(
     "controller-type",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "The type of a controller is one that a package has.",
     why=(
         "pluginlib finds no such class. The controller manager prints 'Loader for controller "
@@ -134,7 +132,7 @@ _CONTROLLER_TYPE = Rule(
 )
 
 
-def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismatch]:
+def _other_type(workspace: Workspace, controller: Controller) -> Mismatches:
     """Yield that no package has a class of the controller's type.
 
     It is certain where all classes of the package are known, or the same class is in a package with
@@ -147,12 +145,14 @@ def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismat
     if _may_have_type(workspace, written, is_known=is_known):
         return
     same_class = [kind for kind in types if kind.partition("/")[2] == class_name]
-    meant = _meant_type(written, same_class, is_known=is_known)
+    other = other_name("controller", written, workspace.releases)
+    meant = other.name or None if other is not None else None
+    meant = meant or _meant_type(written, same_class, is_known=is_known)
     if meant is None and not is_known:
         return
     guess = f"; did you mean {meant!r}?" if meant is not None else ""
     message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
-    is_certain = is_known or near(written, same_class) is not None
+    is_certain = is_known or other is not None or near(written, same_class) is not None
     at = controller.type.location
     either = corrections(written, at, meant)
     yield Mismatch(_CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
@@ -175,12 +175,12 @@ def _may_have_type(workspace: Workspace, written: str, *, is_known: bool) -> boo
 
     `is_known` says whether all types of its package are known.
     """
-    if is_known_controller(written) or releases_with("controller", written):
-        return True
     package = written.partition("/")[0]
     is_of_workspace = any(each.name == package for each in workspace.packages)
     if is_of_workspace or workspace.texts.has_plugin(written):
         return True
+    if is_known_controller(written) or releases_with("controller", written):
+        return other_name("controller", written, workspace.releases) is None
     if is_known or not any(each.depends_on(package) for each in workspace.packages):
         return False
     return near(package, [kind.partition("/")[0] for kind in controller_types()]) is None
@@ -190,7 +190,6 @@ _CONTROLLER_PARAMETERS = Rule(
     "controller-parameters",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A controller that needs parameters has some.",
     why=(
         "Without names of joints or interfaces the controller cannot be configured, or it moves"
@@ -219,7 +218,7 @@ arm_controller:
 
 def _no_parameters(
     workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that a controller that needs joints has no parameters.
 
     It has neither a section of its name, nor one of all nodes, nor a file of its own.
@@ -238,7 +237,6 @@ _CONTROLLER_LIST = Rule(
     "controller-list",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A parameter of a controller that needs a list has one.",
     why=(
         "The controller declares a list, so a string raises a parameter type exception. The "
@@ -259,7 +257,7 @@ command_interfaces: [position]
 )
 
 
-def _no_list(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
+def _no_list(controller: Controller, section: YamlNode) -> Mismatches:
     """Yield the parameters of a controller that are lists of joints, and are given a string."""
     for key in controller_row(controller.type.text).joints:
         given = section.get(key) if key.endswith("s") else None
@@ -275,7 +273,6 @@ _CLAIMED_ONCE = Rule(
     "claimed-once",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A controller claims each command interface once.",
     why=(
         "The resource manager hands out each command interface once. The second claim raises an"
@@ -296,7 +293,7 @@ command_interfaces: [position]
 )
 
 
-def _claimed_twice(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
+def _claimed_twice(controller: Controller, section: YamlNode) -> Mismatches:
     """Yield the command interfaces that a controller claims twice.
 
     Steering controllers, which have the parameters of an older release as well, claim those of
@@ -375,8 +372,7 @@ _CONTROLLER_INTERFACE = Rule(
     "controller-interface",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
-    "<ros2_control> has the command interfaces that a controller needs.",
+    "<ros2_control> has the interfaces of joints that a controller needs.",
     why=(
         "The controller manager does not activate a controller whose interfaces are missing. "
         "Its spawner ends with an error, and the joints do not move."
@@ -396,9 +392,7 @@ command_interfaces: [position]
 )
 
 
-def _no_interface(
-    workspace: Workspace, controller: Controller, section: YamlNode
-) -> Iterator[Mismatch]:
+def _no_interface(workspace: Workspace, controller: Controller, section: YamlNode) -> Mismatches:
     """Yield the command interfaces that a controller needs and <ros2_control> does not have.
 
     They are those of a joint.
@@ -428,29 +422,44 @@ def _beside(workspace: Workspace, controller: Controller, section: YamlNode) -> 
     return section
 
 
-def _no_state(
-    workspace: Workspace, controller: Controller, section: YamlNode
-) -> Iterator[Mismatch]:
-    """Yield the state interfaces of a list that <ros2_control> does not have of a joint.
+def _no_state(workspace: Workspace, controller: Controller, section: YamlNode) -> Mismatches:
+    """Yield the state interfaces that a controller reads and <ros2_control> does not have.
 
     Own hardware may have others than those that are listed there.
     """
     if not is_known_controller(controller.type.text):
         return
-    robots = robots_for_file(workspace, section.source.path).robots
-    offered = state_interfaces(robots)
+    offered = state_interfaces(robots_for_file(workspace, section.source.path).robots)
+    said = set[str]()
+    for kind, joint, at in _needed_states(controller, section):
+        interfaces = offered.get(joint, (kind,))
+        if kind in said or kind in interfaces or may_be_offered(workspace, kind, "state_interface"):
+            continue
+        said.add(kind)
+        text = (
+            f"{controller.name} needs the state interface {joint}/{kind}, which <ros2_control> "
+            "does not have"
+        )
+        yield Mismatch(_CONTROLLER_INTERFACE, text, at)
+
+
+def _needed_states(
+    controller: Controller, section: YamlNode
+) -> Iterator[tuple[str, str, Location]]:
+    """Yield the state interfaces that a controller reads: kind, joint and where it is named."""
     for kind in _entries(section, "state_interfaces"):
-        lacking = []
         for joint in _entries(section, "joints"):
-            name = joint.text or ""
-            if name in offered and kind.text not in offered[name]:
-                lacking.append(name)
-        if lacking and not may_be_offered(workspace, kind.text or "", "state_interface"):
-            text = (
-                f"{controller.name} needs the state interface {lacking[0]}/{kind.text}, which "
-                "<ros2_control> does not have"
-            )
-            yield Mismatch(_CONTROLLER_INTERFACE, text, kind.location)
+            yield kind.text or "", joint.text or "", kind.location
+    feedback = controller_row(controller.type.text).feedback
+    if feedback is None:
+        return
+    switch, other = section.get(feedback.switch), section.get(feedback.unless)
+    kinds = {"true": feedback.on, "false": feedback.off}
+    kind_read = kinds.get((switch.text or "").lower(), "") if switch is not None else feedback.on
+    is_off = other is None or (other.text or "").lower() == "false"
+    for key in feedback.joints if kind_read and is_off else ():
+        for joint in _entries(section, key):
+            yield kind_read, joint.text or "", joint.location
 
 
 def _are_all_joints(
@@ -469,7 +478,7 @@ def _missing_interfaces(
     needed: Sequence[str],
     message: str,
     interfaces: tuple[frozenset[str], Location],
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield the command interfaces that <ros2_control> does not have of a joint that it has."""
     offered, at = interfaces
     there = f"<ros2_control> has {', '.join(sorted(offered)) or 'none'} ({at.file_and_line})"
@@ -480,7 +489,7 @@ def _missing_interfaces(
             yield Mismatch(_CONTROLLER_INTERFACE, text, joint.location, at, corrections=either)
 
 
-def _action_facts(workspace: Workspace) -> Iterator[Fact]:
+def _action_facts(workspace: Workspace) -> Facts:
     """Yield the controllers whose actions own nodes ask for."""
     namespaces = _namespaces(workspace)
     for _, node in workspace.launches.nodes:

@@ -1,6 +1,6 @@
 """Dependencies: whether package.xml of a package declares the packages that its files use."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from grader.base.names import near
 from grader.ros.installation.installation import FoundPackage
@@ -12,8 +12,9 @@ from grader.ros.package.package import Package
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     corrections,
     cost_of_guess,
     warning,
@@ -45,7 +46,7 @@ _FOR_BUILD = frozenset({"build_depend", "buildtool_depend"})
 _WITH_NODES = ("rclcpp", "rclcpp_action", "rclcpp_components", "rclcpp_lifecycle", "tf2_ros")
 
 
-def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
+def dependency_facts(workspace: Workspace) -> Facts:
     """Yield the packages that a package uses and does not declare."""
     for package in workspace.packages:
         if package.manifest is None or package.manifest.refusals:
@@ -75,7 +76,6 @@ _BUILD_ORDER = Rule(
     "build-order",
     "dependencies",
     BUILT_LATER,
-    BUILT_LATER,
     "package.xml declares the packages of the workspace that CMake needs.",
     why=(
         "colcon may build the other package later, and find_package() then stops a clean build."
@@ -102,7 +102,7 @@ _BUILD_ORDER = Rule(
 )
 
 
-def _built_before(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
+def _built_before(workspace: Workspace, package: Package) -> Mismatches:
     """Yield the packages of the workspace that CMake needs, and that colcon may build later.
 
     colcon orders packages by what package.xml declares. What a release has, too, CMake may find
@@ -144,7 +144,6 @@ DEPENDENCY_DECLARED = Rule(
     "dependency-declared",
     "dependencies",
     NO_DEPENDENCY,
-    LENT,
     "package.xml declares the packages that the files of the package use.",
     why=(
         "rosdep installs and colcon builds first only what is declared. On a new machine or in "
@@ -157,12 +156,13 @@ DEPENDENCY_DECLARED = Rule(
         "rover.launch.py": "Node(package='turtlesim', executable='turtlesim_node'),",
     },
     at="launch/rover.launch.py",
+    doubtful_kind=LENT,
 )
 
 
 def _undeclared(
     workspace: Workspace, package: Package, manifest: Manifest, used: Mapping[str, PackageUse]
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield the packages that are used and that package.xml does not declare.
 
     Those that packages of the workspace bring, which are declared, rosdep installs.
@@ -200,7 +200,6 @@ _DEPENDENCY_KIND = Rule(
     "dependency-kind",
     "builds",
     FORM,
-    FORM,
     "package.xml declares what a build needs for it, and what a run needs for that.",
     why=(
         "rosdep and the build farm can install build and run dependencies apart. A clean build "
@@ -221,9 +220,7 @@ _DEPENDENCY_KIND = Rule(
 )
 
 
-def _of_other_kind(
-    package: Package, manifest: Manifest, uses: Sequence[PackageUse]
-) -> Iterator[Mismatch]:
+def _of_other_kind(package: Package, manifest: Manifest, uses: Sequence[PackageUse]) -> Mismatches:
     """Yield the packages that a build needs and package.xml declares only for a run, or inversely.
 
     A C++ program needs the library of a package with nodes when it runs, too.

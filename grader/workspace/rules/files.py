@@ -24,8 +24,9 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
     Correction,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     Undecided,
     corrections,
     cost_of_guess,
@@ -51,7 +52,7 @@ _URI = re.compile(r"package://([\w-]+)/([\w./-]+)")  # of a whole text
 _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 
-def file_facts(workspace: Workspace) -> Iterator[Fact]:
+def file_facts(workspace: Workspace) -> Facts:
     """Yield the paths at which a build of the workspace installs no file."""
     yield from _find_faults(workspace, named_paths(workspace))
     yield from _map_images(workspace)
@@ -61,7 +62,7 @@ def file_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _find_faults(workspace, _paths_in_cpp(workspace, package))
 
 
-def _find_faults(workspace: Workspace, every: Iterable["PathInFile"]) -> Iterator[Fact]:
+def _find_faults(workspace: Workspace, every: Iterable["PathInFile"]) -> Facts:
     """Yield the paths that are compared, and then what is wrong with them."""
     first_named: dict[tuple[str, Location], PathInFile] = {}
     for named in every:
@@ -229,7 +230,7 @@ def _texts_given(node: StartedNode, *, is_own: bool) -> Iterator[_Text]:
                 yield _Text(parameter.value, parameter.location, is_read, is_own, is_needed)
 
 
-def _find_fault(workspace: Workspace, named: PathInFile) -> Iterator[Fact]:
+def _find_fault(workspace: Workspace, named: PathInFile) -> Facts:
     """Yield that no file is installed at a path, if this is certain."""
     package, at = named.package, named.location
     name, rest = share_parts(named.path)
@@ -264,7 +265,6 @@ _FILE_PACKAGE = Rule(
     "file-package",
     "files",
     NO_FILE,
-    SIMILAR,
     "The package of a path exists.",
     why=(
         "get_package_share_directory() raises PackageNotFoundError for an unknown package. A "
@@ -284,7 +284,7 @@ Node(package='usb_cam', executable='usb_cam_node_exe',
 )
 
 
-def _no_package(workspace: Workspace, named: PathInFile) -> Iterator[Mismatch]:
+def _no_package(workspace: Workspace, named: PathInFile) -> Mismatches:
     """Yield that the package of a path is a misspelt one of the workspace.
 
     Others may be installed; of a well-known one it is compared which launch files it has.
@@ -304,7 +304,6 @@ _LAUNCH_FILE_NAME = Rule(
     "launch-file-name",
     "files",
     SIMILAR,
-    SIMILAR,
     "An included launch file of a well-known package exists.",
     why=(
         "ros2 launch looks for the file in the share folder of the package. It stops with an "
@@ -315,7 +314,7 @@ _LAUNCH_FILE_NAME = Rule(
 )
 
 
-def _misspelt_launch_file(package: str, file: str, at: Location) -> Iterator[Mismatch]:
+def _misspelt_launch_file(package: str, file: str, at: Location) -> Mismatches:
     """Yield that a well-known package has a launch file of nearly this name, and none of this."""
     ending = file.partition(".")[2]
     stems = []
@@ -336,7 +335,6 @@ FILE_INSTALLED = Rule(
     "file-installed",
     "files",
     NO_FILE,
-    SIMILAR,
     "A build installs each file at the path that another file names.",
     why=(
         "Programs look in the share folder of the install space: an include stops ros2 launch "
@@ -402,7 +400,7 @@ def _not_there(
     )
 
 
-def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Iterator[Mismatch]:
+def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Mismatches:
     """Yield where else a build installs what is in a folder, if anywhere."""
     setup = owner.installation
     assert setup is not None
@@ -452,7 +450,6 @@ _MAP_IMAGE = Rule(
     "map-image",
     "files",
     NO_FILE,
-    SIMILAR,
     "The image of a map exists.",
     why=(
         "map_server fails to load the map when it is configured. The lifecycle manager then "
@@ -473,7 +470,7 @@ resolution: 0.05
 )
 
 
-def _map_images(workspace: Workspace) -> Iterator[Fact]:
+def _map_images(workspace: Workspace) -> Facts:
     """Yield the images of maps that are not there."""
     files = workspace.tree.files
     for path, tree in workspace.installed.trees:
@@ -497,7 +494,6 @@ _WORLD_MODEL = Rule(
     "world-model",
     "files",
     NO_FILE,
-    SIMILAR,
     "The models that a world includes exist.",
     why=(
         "Gazebo prints that it is unable to find the URI of the include, and the model is "
@@ -512,7 +508,7 @@ _WORLD_MODEL = Rule(
 )
 
 
-def _models(workspace: Workspace) -> Iterator[Fact]:
+def _models(workspace: Workspace) -> Facts:
     """Yield models that worlds include, and whose names are similar to those of the workspace."""
     models = set()
     for package in workspace.packages:

@@ -18,7 +18,12 @@ from grader.ros.urdf.shapes import PlacedShape
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.under_arguments import may_vary
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     OTHER_VALUE,
     Rule,
@@ -54,7 +59,7 @@ class _Room(NamedTuple):
         return self.radius + max(x * corner[0] + y * corner[1] for corner in self.corners)
 
 
-def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
+def footprint_facts(workspace: Workspace) -> Facts:
     """Yield the costmaps for which the robot is smaller than it is.
 
     Where there are several robots, it may be the footprint of one that it has room for.
@@ -77,7 +82,6 @@ def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
 _FOOTPRINT_SIZE = Rule(
     "footprint-size",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "The footprint of a costmap holds the robot.",
     why=(

@@ -30,8 +30,9 @@ from grader.workspace.model.under_arguments import names_under_arguments
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Definition,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     Open,
     Pattern,
     Use,
@@ -41,7 +42,6 @@ from grader.workspace.rules.names import (
 )
 from grader.workspace.rules.rule_table import (
     NO_FRAME,
-    SIMILAR,
     Rule,
 )
 
@@ -59,7 +59,7 @@ _OWN_FRAMES = re.compile(
 )
 
 
-def frame_facts(workspace: Workspace) -> Iterator[Fact]:
+def frame_facts(workspace: Workspace) -> Facts:
     """Yield the frames and joints that are defined, and those that files name.
 
     The files are YAML, SRDF, those of Gazebo and those of transforms.
@@ -132,7 +132,7 @@ def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
         yield Open("frame")
 
 
-def _named_in_code(named: Sequence["_NamedFrame"], above: Collection[str]) -> Iterator[Fact]:
+def _named_in_code(named: Sequence["_NamedFrame"], above: Collection[str]) -> Facts:
     """Yield frames of code, but for those that are looked up above a static transform."""
     for each in named:
         if each.frame.use != "looks up" or each.name not in above:
@@ -198,7 +198,7 @@ def _may_open_transforms(facts: NodeFacts) -> bool:
     return bool(facts.doubts) or any(end.type == _TRANSFORMS for end in facts.endpoints)
 
 
-def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
+def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Facts:
     """Yield the frames that own nodes publish, look up and name in messages."""
     named: list[_NamedFrame] = []
     above = set()  # the frames that static transforms have as their parent: the root of a map
@@ -282,7 +282,6 @@ _ROOT_FRAME = Rule(
     "root-frame",
     "frames",
     NO_FRAME,
-    SIMILAR,
     "A frame that code publishes is not a misspelling of the root of the robot.",
     why=(
         "The odometry and the robot are then two trees. tf2 finds no transform from odom to a "
@@ -310,7 +309,7 @@ sender_->sendTransform(t);
 )
 
 
-def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> Iterator[Mismatch]:
+def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> Mismatches:
     """Yield frames that are published, and are like the root of a robot that nothing places.
 
     It is certain for a node that is started, with one robot.
@@ -341,7 +340,7 @@ def _is_static(node: StartedNode) -> bool:
     return (node.package, node.executable) == STATIC_PUBLISHER
 
 
-def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
+def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Facts:
     """Yield the frames of static transforms, those that they publish and those that they need."""
     children = {joint.child for robot in robots for joint in robot.joints}
     links = {link.name for robot in robots for link in robot.links}
@@ -374,7 +373,6 @@ _FRAME_PARENT = Rule(
     "frame-parent",
     "frames",
     NO_FRAME,
-    SIMILAR,
     "A link of the robot gets no second parent.",
     why=(
         "tf2 keeps one parent of each frame, that of the last message. The link jumps between "
@@ -400,7 +398,7 @@ Node(
 )
 
 
-def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Mismatch]:
+def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Mismatches:
     """Yield static transforms that give a link of the robot a second parent.
 
     It is certain for a node that is started, with one robot.
@@ -441,7 +439,7 @@ def _is_of_absent_robot(workspace: Workspace, path: str, values: Sequence[YamlVa
     return all(near(name, joints) is None for name in named)
 
 
-def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
+def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Facts:
     """Yield the joints and frames that a parameter names.
 
     What a node of another kind calls joints may be other things.
@@ -466,7 +464,7 @@ def _frame_in_yaml(name: str, at: Location, value: YamlValue) -> Iterator[Defini
         yield Definition("frame", name, at)
 
 
-def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
+def _in_robot(robot: KnownRobot) -> Facts:
     """Yield what the elements for Gazebo and ros2_control name."""
     joints = {joint.name for joint in robot.robot.joints}
     named = (*gazebo().frame_elements, *gazebo().joint_elements)
@@ -483,7 +481,7 @@ def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
         yield from _in_system(robot, system)
 
 
-def _in_element(robot: KnownRobot, element: Element) -> Iterator[Fact]:
+def _in_element(robot: KnownRobot, element: Element) -> Facts:
     """Yield the joint or frame that an element for Gazebo names, or makes."""
     text, at, said = (element.text or "").strip(), robot.place(element), f"<{element.tag}>"
     parent = element.getparent()
@@ -496,7 +494,7 @@ def _in_element(robot: KnownRobot, element: Element) -> Iterator[Fact]:
         yield Use("frame", text, at, said)
 
 
-def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
+def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Facts:
     """Yield the frames that systems of Gazebo publish.
 
     They are those that the systems name, and by default those below the model's.
@@ -544,7 +542,7 @@ def _sensor_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Us
                     yield Use("frame", name, at, f"<{element.tag}>", optional=True)
 
 
-def _in_system(robot: KnownRobot, system: Element) -> Iterator[Fact]:
+def _in_system(robot: KnownRobot, system: Element) -> Facts:
     """Yield the joints that a system of ros2_control names."""
     for element in system.iterchildren("joint"):
         yield Use("joint", element.get("name", ""), robot.place(element), "<ros2_control>")

@@ -1,6 +1,5 @@
 """Gains of controllers: one that computes commands with gains moves nothing if none is given."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.base.source import Location
@@ -10,7 +9,12 @@ from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.python.values import Unknown
 from grader.workspace.graph.started_controllers import defined_controllers
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     MOVES_NOTHING,
     Rule,
@@ -25,7 +29,7 @@ class _LackingGains(NamedTuple):
     location: Location
 
 
-def gain_facts(workspace: Workspace) -> Iterator[Fact]:
+def gain_facts(workspace: Workspace) -> Facts:
     """Yield the controllers that are given no gains for a joint, and need them."""
     for controller in defined_controllers(workspace):
         gains = controller_row(controller.type.text).gains
@@ -66,7 +70,6 @@ def _texts(given: NodeParameters, name: str) -> list[str]:
 _GAIN_SET = Rule(
     "gain-set",
     "effects",
-    MOVES_NOTHING,
     MOVES_NOTHING,
     "A controller that computes efforts or velocities with gains has gains.",
     why=(

@@ -18,13 +18,18 @@ from grader.workspace.graph.bridge_rows import BRIDGE
 from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.started_worlds import started_worlds
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Fact, Mismatch, corrections, warning
+from grader.workspace.rules.names import (
+    Facts,
+    Mismatch,
+    Mismatches,
+    corrections,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
     NO_PARAMETER,
     NO_TOPIC,
     NO_WORD,
-    SIMILAR,
     Rule,
 )
 
@@ -33,7 +38,7 @@ _OPTION = re.compile(r"--?[A-Za-z]")
 _WITHOUT_VALUE = "allow_renaming"  # an option of create
 
 
-def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
+def gazebo_facts(workspace: Workspace) -> Facts:
     """Yield systems that worlds lack, and what is spawned, or bridged, from what is not there."""
     worlds: dict[str, XmlFile] = {}  # those that launch files name
     for file in workspace.texts.sdf_files:
@@ -42,6 +47,7 @@ def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
             for world in file.root.iterchildren("world"):
                 worlds[world.get("name", "")] = file
                 yield from _missing_systems(workspace, file, world)
+    yield from _refused_sensors(workspace)
     for _, node in workspace.launches.nodes:
         if _is_creator(node):
             yield from _created_from_topic(workspace, node)
@@ -55,7 +61,6 @@ def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
 _SIMULATION_STARTED = Rule(
     "simulation-started",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "Something starts the Gazebo in which a robot is created.",
     why=(
@@ -81,7 +86,7 @@ Node(package='ros_gz_sim', executable='create', arguments=['-string', robot]),
 )
 
 
-def _created_without_gazebo(workspace: Workspace) -> Iterator[Mismatch]:
+def _created_without_gazebo(workspace: Workspace) -> Mismatches:
     """Yield that a robot is created, and that no launch file starts Gazebo with its world.
 
     Nothing is said where launch files name no world of the workspace: another command may start it.
@@ -97,11 +102,38 @@ def _is_creator(node: StartedNode) -> bool:
     return node.package == _SIMULATION and node.executable == "create"
 
 
+_SENSOR_NAME = Rule(
+    "sensor-name",
+    "topics",
+    NO_TOPIC,
+    "A sensor of Gazebo has a name, which no other one of its link has.",
+    why="libsdformat refuses the description, so that Gazebo creates nothing of the robot.",
+    wrong='<gazebo reference="base_link"><sensor type="imu"><topic>imu</topic></sensor></gazebo>',
+    right="""
+<gazebo reference="base_link"><sensor name="imu" type="imu"><topic>imu</topic></sensor></gazebo>
+""",
+    frame="rover.urdf",
+)
+
+
+def _refused_sensors(workspace: Workspace) -> Mismatches:
+    """Yield sensors without a name, or with the name of another one of their link."""
+    for robot in workspace.robots.known:
+        seen = set[tuple[str, str]]()
+        for sensor in robot.root.iterfind("gazebo/sensor"):
+            above = sensor.getparent()
+            name, link = sensor.get("name", ""), "" if above is None else above.get("reference", "")
+            if not name or (link, name) in seen:
+                has = f"the name {quoted(name)} of another one" if name else "no name"
+                message = f"a sensor has {has}, so Gazebo refuses the robot"
+                yield Mismatch(_SENSOR_NAME, message, robot.place(sensor))
+            seen.add((link, name))
+
+
 _SENSOR_SYSTEM = Rule(
     "sensor-system",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A world has the systems that its sensors need.",
     why=(
         "Gazebo updates a sensor only if the world loads the system for its type. Without it "
@@ -127,7 +159,7 @@ Node(package='ros_gz_sim', executable='create', arguments=['-string', robot]),
 )
 
 
-def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Iterator[Mismatch]:
+def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Mismatches:
     """Yield the systems that a world lacks for sensors in it and in the robot.
 
     The world has systems of its own.
@@ -176,7 +208,6 @@ _CREATED_WORLD = Rule(
     "created-world",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A robot is created in the world that Gazebo runs.",
     why=(
         "'create' calls a service of the named world, which Gazebo does not offer. It waits or "
@@ -202,7 +233,7 @@ Node(package='ros_gz_sim', executable='create', arguments=['-world', 'field', '-
 )
 
 
-def _created_in_world(node: StartedNode, worlds: Mapping[str, XmlFile]) -> Iterator[Mismatch]:
+def _created_in_world(node: StartedNode, worlds: Mapping[str, XmlFile]) -> Mismatches:
     """Yield that a robot is created in another world than the one that launch files name.
 
     The name is compared where launch files name only one world.
@@ -246,7 +277,6 @@ _CREATE_OPTION = Rule(
     "create-option",
     "words",
     NO_WORD,
-    NO_WORD,
     "The program that creates a robot in Gazebo has the given options.",
     why=(
         "The program 'create' reports no unknown options. The robot appears with another name "
@@ -263,7 +293,7 @@ Node(package='ros_gz_sim', executable='create',
 )
 
 
-def _unknown_options(node: StartedNode) -> Iterator[Mismatch]:
+def _unknown_options(node: StartedNode) -> Mismatches:
     """Yield the options that the program that creates robots does not have, and ignores."""
     for name in _options_given(node) or ():
         if name in create_table().options:
@@ -279,7 +309,6 @@ _CREATED_FROM = Rule(
     "created-from",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The program that creates a robot in Gazebo gets its source.",
     why=(
         "The program 'create' prints an error and ends, so no robot appears in Gazebo. Spawners"
@@ -292,7 +321,7 @@ Node(package='ros_gz_sim', executable='create', arguments=['-name', 'rover', '-s
 )
 
 
-def _created_from_nothing(node: StartedNode) -> Iterator[Mismatch]:
+def _created_from_nothing(node: StartedNode) -> Mismatches:
     """Yield that the program that creates robots gets no source of one. Parameters may name it."""
     given = _options_given(node)
     if given is None or node.parameters != () or set(given).intersection(create_table().sources):
@@ -306,7 +335,6 @@ _CREATED_TOPIC = Rule(
     "created-topic",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A robot is created from the topic that robot_state_publisher has.",
     why=(
         "'create' prints 'Waiting messages on topic' again and again, because nothing publishes"
@@ -325,7 +353,7 @@ Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'robot_desc
 )
 
 
-def _created_from_topic(workspace: Workspace, node: StartedNode) -> Iterator[Mismatch]:
+def _created_from_topic(workspace: Workspace, node: StartedNode) -> Mismatches:
     """Yield that no robot_state_publisher publishes the topic from which a robot is created.
 
     Nothing is said where more nodes may be started, or one of them may publish the topic.
@@ -352,7 +380,6 @@ _BRIDGE_TOPICS = Rule(
     "bridge-topics",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A bridge has topics.",
     why=(
         "The program passes no message between Gazebo and ROS 2: no sensor data arrive, and "
@@ -369,7 +396,7 @@ Node(
 )
 
 
-def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
+def _bridges(workspace: Workspace) -> Mismatches:
     """Yield bridges without any topic."""
     for package, node in workspace.launches.nodes:
         is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"

@@ -1,14 +1,16 @@
 """The hardware of robots in Gazebo, and the plugin of ros2_control that loads it."""
 
 import re
-from collections.abc import Iterator
 
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -16,7 +18,7 @@ _PACKAGES = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
 _LIBRARY = re.compile(r"(?:lib)?(\w+?_ros2_control)(?:-system)?(?:\.so)?")
 
 
-def gazebo_hardware_facts(workspace: Workspace) -> Iterator[Fact]:
+def gazebo_hardware_facts(workspace: Workspace) -> Facts:
     """Yield hardware of another package than the plugin of Gazebo that loads it."""
     for robot in workspace.robots.known:
         loading = _loading_packages(robot)
@@ -38,7 +40,6 @@ _GAZEBO_HARDWARE = Rule(
     "gazebo-hardware",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "The plugin of ros2_control loads hardware of its own package.",
     why=(
         "Each plugin looks only for hardware classes of its own package. The hardware is not "
@@ -66,7 +67,7 @@ _GAZEBO_HARDWARE = Rule(
 )
 
 
-def _other_hardware(robot: KnownRobot, hardware: str, loading: set[str]) -> Iterator[Mismatch]:
+def _other_hardware(robot: KnownRobot, hardware: str, loading: set[str]) -> Mismatches:
     """Yield that hardware is of a package for Gazebo whose plugin is not loaded."""
     name = hardware.strip().partition("/")[0]
     if name not in _PACKAGES or name in loading:

@@ -13,7 +13,13 @@ from grader.ros.package.installed_files import are_installs_known
 from grader.ros.package.package import CMAKE, Package
 from grader.workspace.model.text_files import FILES_A_PART
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, cost_of_guess
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    Mismatches,
+    cost_of_guess,
+)
 from grader.workspace.rules.rule_table import (
     NOT_COMPILED,
     Rule,
@@ -43,7 +49,7 @@ _FINDS_OTHERS = re.compile(
 _OF_INTERFACES = re.compile(r"/(?:msg|srv|action)/|/rosidl_|visibility_control")
 
 
-def header_facts(workspace: Workspace) -> Iterator[Fact]:
+def header_facts(workspace: Workspace) -> Facts:
     """Yield the headers of the workspace that compiled files include and that the compiler lacks.
 
     What a build may make, and what a submodule or an unread file may have, is not compared.
@@ -109,7 +115,7 @@ def _included_by_targets(workspace: Workspace, package: Package) -> Iterator[Inc
 
 def _missing(
     workspace: Workspace, package: Package, header: IncludedHeader, headers: _Headers
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that the compiler does not find a header."""
     having = []
     for other in headers.get(posixpath.basename(header.path), ()):
@@ -133,7 +139,7 @@ def _absent(
     owner: Package,
     header: IncludedHeader,
     headers: _Headers,
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that a package has no header at a path in its own folder."""
     setup = owner.installation
     is_made = _OF_INTERFACES.search(header.path) or workspace.code.interfaces[owner.name].types
@@ -161,7 +167,7 @@ def _has_only_ros(workspace: Workspace, text: str) -> bool:
 
 def _misspelt(
     workspace: Workspace, package: Package, header: IncludedHeader, headers: _Headers
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that a package has a header with a similar name, and nothing has one of this name."""
     setup = package.installation
     if setup is None or _GENERATORS.search(setup.source.text):
@@ -176,7 +182,6 @@ def _misspelt(
 _OWN_HEADER = Rule(
     "own-header",
     "builds",
-    NOT_COMPILED,
     NOT_COMPILED,
     "The headers of a package that a compiled file includes exist.",
     why=(
@@ -224,7 +229,6 @@ _HEADER_INSTALLED = Rule(
     "header-installed",
     "builds",
     NOT_COMPILED,
-    NOT_COMPILED,
     "A build installs the headers that other packages include.",
     why=(
         "The package itself builds, and the build of the other package stops at the include "
@@ -269,7 +273,7 @@ RCLCPP_COMPONENTS_REGISTER_NODE(rover::Drive)
 )
 
 
-def _not_installed(package: Package, owned: _Header, header: IncludedHeader) -> Iterator[Mismatch]:
+def _not_installed(package: Package, owned: _Header, header: IncludedHeader) -> Mismatches:
     """Yield that a build does not install the header of another package."""
     owner, setup = owned.package, owned.package.installation
     user = package.installation

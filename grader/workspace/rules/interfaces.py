@@ -3,7 +3,7 @@
 What generates code of the files is here, too, and so are the fields that nodes use.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 
 from grader.base.names import closest, near
@@ -31,10 +31,16 @@ from grader.ros.package.package import Package
 from grader.ros.package.package_interfaces import PackageInterfaces
 from grader.ros.python.values import Value
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, Undecided, corrections
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    Mismatches,
+    Undecided,
+    corrections,
+)
 from grader.workspace.rules.rule_table import (
     NO_INTERFACE,
-    SIMILAR,
     Rule,
 )
 
@@ -52,7 +58,7 @@ _OPEN_ITEMS = BOOLEANS | {"byte", "char", "octet", "uint8", "int8"}
 _OF_ONE_FOLDER: frozenset[Release] = frozenset({"foxy", "galactic"})
 
 
-def interface_facts(workspace: Workspace) -> Iterator[Fact]:
+def interface_facts(workspace: Workspace) -> Facts:
     """Yield what is wrong with interfaces, and types and fields that are used and do not exist."""
     for package in workspace.packages:
         interfaces = workspace.code.interfaces[package.name]
@@ -79,7 +85,6 @@ _INTERFACE_GROUP = Rule(
     "interface-group",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "package.xml of a package with interfaces has <member_of_group>.",
     why=(
         "rosidl_generate_interfaces() stops CMake with an error. colcon builds neither the "
@@ -96,7 +101,7 @@ _INTERFACE_GROUP = Rule(
 )
 
 
-def _no_group(package: Package, interfaces: PackageInterfaces) -> Iterator[Mismatch]:
+def _no_group(package: Package, interfaces: PackageInterfaces) -> Mismatches:
     """Yield that package.xml does not say that a package has interfaces.
 
     Nothing is said of one that is not read whole, or that ROS 2 refuses.
@@ -116,7 +121,6 @@ _INTERFACE_FILE = Rule(
     "interface-file",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "rosidl reads the files of messages, services and actions.",
     why=(
         "The build of the package stops at the file. None of its messages are generated, and "
@@ -132,7 +136,7 @@ _INTERFACE_FILE = Rule(
 )
 
 
-def _unreadable_files(interfaces: PackageInterfaces) -> Iterator[Mismatch]:
+def _unreadable_files(interfaces: PackageInterfaces) -> Mismatches:
     """Yield what rosidl cannot read in the files of interfaces."""
     for own_type in interfaces.types.values():
         for fault in own_type.interface.faults:
@@ -143,7 +147,7 @@ def _unreadable_files(interfaces: PackageInterfaces) -> Iterator[Mismatch]:
 
 def _types_of_fields(
     workspace: Workspace, package: Package, interfaces: PackageInterfaces
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that nothing defines the type of a field.
 
     Otherwise yield that CMakeLists.txt does not name the package of the type.
@@ -166,7 +170,6 @@ _INTERFACE_DEPENDENCY = Rule(
     "interface-dependency",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "rosidl_generate_interfaces() names the packages whose types fields have.",
     why=(
         "The build stops, because the generated code includes message headers of the other "
@@ -185,7 +188,7 @@ _INTERFACE_DEPENDENCY = Rule(
 
 def _no_dependency(
     workspace: Workspace, interfaces: PackageInterfaces, field: InterfaceField, at: Location
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that CMakeLists.txt does not name the package of the type of a field.
 
     Nothing is said where not all is known that it names, and for releases that have all headers
@@ -254,7 +257,6 @@ _INTERFACE_TYPE = Rule(
     "interface-type",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "The messages, services and actions that code and interface files use exist.",
     why=(
         "A Python node ends at its start with an ImportError or ModuleNotFoundError. A C++ file"
@@ -325,7 +327,7 @@ def _no_type_of_kind(shown: str, name: str, names: Sequence[str], at: Location) 
     return Mismatch(_INTERFACE_TYPE, f"{shown}{hint}", at, corrections=either)
 
 
-def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
+def _used_types(workspace: Workspace, package: Package) -> Facts:
     """Yield the types that a package's code imports or opens, and that do not exist."""
     nodes = workspace.code.by_package[package.name]
     used = {used_type.name: used_type.location for used_type in reversed(nodes.imports)}
@@ -355,7 +357,7 @@ def _find_interface(workspace: Workspace, package: str, name: str) -> Interface 
 # --- Fields
 
 
-def _used_field(workspace: Workspace, use: FieldUse) -> Iterator[Fact]:
+def _used_field(workspace: Workspace, use: FieldUse) -> Facts:
     """Yield that a type has no field that is used, or that it gets a value of another type."""
     find = partial(_find_interface, workspace)
     used = resolve_field(use, find)
@@ -372,7 +374,6 @@ _INTERFACE_FIELD = Rule(
     "interface-field",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "The fields and constants that code uses exist.",
     why=(
         "Python raises an AttributeError when the line runs, often first in a callback. A C++ "
@@ -394,7 +395,7 @@ self.speeds.publish(speed)
 
 def _no_field(
     workspace: Workspace, used: UsedField, find: FindInterface, at: Location
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that a type does not have a field or a constant that code uses."""
     if used.name == _OF_EMPTY and not used.section.fields and not at.path.endswith(".py"):
         return
@@ -414,7 +415,6 @@ _FIELD_VALUE = Rule(
     "field-value",
     "interfaces",
     NO_INTERFACE,
-    SIMILAR,
     "A field is set to a value of its type.",
     is_of_type=True,
     why=(
@@ -437,7 +437,7 @@ self.speeds.publish(speed)
 
 def _other_value(
     workspace: Workspace, field: InterfaceField, shown: str, use: FieldUse
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that a field is set to a value that its type certainly does not take."""
     for value in use.literal:
         if isinstance(value, list):
@@ -458,7 +458,7 @@ def _type_in_words(kind: FieldType) -> str:
 
 def _other_list(
     workspace: Workspace, field: InterfaceField, items: Sequence[Value], shown: str, at: Location
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that a field is set to a list of another length, or with an item of another type.
 
     Up to Iron the setters of rclpy check both. From Jazzy on they convert numbers to floats, and

@@ -5,7 +5,7 @@ whether remappings replace names that they have.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from grader.base.names import near
@@ -22,7 +22,12 @@ from grader.workspace.graph.node_ends import KnownProgram, programs_in
 from grader.workspace.graph.opened_by_programs import ends_of_row
 from grader.workspace.graph.unread_ends import Sought, may_be_opened
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
     NO_WORD,
@@ -46,7 +51,7 @@ class _Input(NamedTuple):
 _ByTopic = Mapping[str, Sequence[End]]  # the ends that publish a topic
 
 
-def known_end_facts(workspace: Workspace) -> Iterator[Fact]:
+def known_end_facts(workspace: Workspace) -> Facts:
     """Yield topics that well-known programs and displays cannot read, and wrong names.
 
     A wrong name is one that the program or display does not have.
@@ -76,7 +81,6 @@ _INPUT_TYPE = Rule(
     "input-type",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "A well-known program reads a topic with the type that it has.",
     why=(
         "The program subscribes with its own type and is not matched with the publisher. It "
@@ -103,7 +107,7 @@ def _other_types(
     program: KnownProgram,
     inputs: Sequence[_Input],
     published: _ByTopic,
-) -> Iterator[Fact]:
+) -> Facts:
     """Yield the topics that a program reads and that are published with another type only.
 
     The program reads them by itself, or as its parameters say.
@@ -170,7 +174,6 @@ _INPUT_PUBLISHED = Rule(
     "input-published",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "The topic that a parameter names is published.",
     why=(
         "The node starts without an error and never gets the input. A filter estimates without "
@@ -192,7 +195,7 @@ Node(package='robot_localization', executable='ekf_node', parameters=[{'odom0': 
 
 def _not_published(
     workspace: Workspace, node: StartedNode, inputs: Sequence[_Input], published: _ByTopic
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield the inputs that nothing publishes, while others publish one that is not read.
 
     Others publish one other topic of their type that the node does not read.
@@ -240,7 +243,6 @@ _REMAPPED_TOPIC = Rule(
     "remapped-topic",
     "words",
     NO_WORD,
-    NO_WORD,
     "A remapping of a well-known program names a topic that it has.",
     why=(
         "A remapping without a match does nothing and prints nothing. The program waits on its "
@@ -257,7 +259,7 @@ Node(package='depthimage_to_laserscan', executable='depthimage_to_laserscan_node
 )
 
 
-def _other_remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
+def _other_remappings(node: StartedNode, row: ProgramRow) -> Mismatches:
     """Yield the remappings of names that surely stand for one that a program has.
 
     What has a colon, or begins with __, is no topic.
@@ -282,7 +284,6 @@ _DISPLAY_TYPE = Rule(
     "display-type",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "A display of RViz reads a topic with the type that it has.",
     why=(
         "The display is never matched with the publisher, so it stays empty although ros2 topic"
@@ -301,7 +302,7 @@ _DISPLAY_TYPE = Rule(
 )
 
 
-def _displays(workspace: Workspace, published: _ByTopic) -> Iterator[Mismatch]:
+def _displays(workspace: Workspace, published: _ByTopic) -> Mismatches:
     """Yield displays of RViz that read other messages than are published."""
     for package in workspace.packages:
         for path in package.rviz_files:

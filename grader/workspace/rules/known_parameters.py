@@ -25,7 +25,10 @@ from grader.ros.python.values import Unknown
 from grader.workspace.graph.started_controllers import defined_controllers
 from grader.workspace.model.stated_releases import deciding_launch_files, releases_in_path
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+)
 from grader.workspace.rules.parameter_rules import GivenNode, wrong_values
 
 # The node that MoveIt's joint_limits.yaml is for, and where its table is among the parameters.
@@ -39,7 +42,7 @@ _WRITTEN_OTHERWISE = Unknown("a string in place of a list", START)
 _COST_OF_VALUE = 20  # parts of comparing a value with the rows of its node
 
 
-def known_parameter_facts(workspace: Workspace) -> Iterator[Fact]:
+def known_parameter_facts(workspace: Workspace) -> Facts:
     """Yield wrong parameters of well-known nodes, controllers and plugins, each place once."""
     said: set[Location] = set()
     for given in _given_nodes(workspace):

@@ -1,14 +1,15 @@
 """Tables of parameters in launch files in Python that are no dictionaries."""
 
-from collections.abc import Iterator
-
 from grader.base.text import cut, quoted
 from grader.ros.launch.parameter_sets import may_have_sets, parameter_sets
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+)
 from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
-    SIMILAR,
     Rule,
 )
 
@@ -19,7 +20,6 @@ _PARAMETER_TABLE = Rule(
     "parameter-table",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The parameters of a node in a launch file are a dictionary.",
     why=(
         "launch_ros takes a set, as in {'speed', 2.0}, for the path of a parameter file. The "
@@ -33,7 +33,7 @@ _PARAMETER_TABLE = Rule(
 )
 
 
-def launch_table_facts(workspace: Workspace) -> Iterator[Fact]:
+def launch_table_facts(workspace: Workspace) -> Facts:
     """Yield the sets among the parameters of a node in a launch file: they set no parameter."""
     for package in workspace.packages:
         for source in filter(may_have_sets, workspace.texts.launch_sources(package)):

@@ -16,7 +16,11 @@ from grader.ros.xml.parsing import Element
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.under_arguments import may_vary
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     OTHER_VALUE,
     Rule,
@@ -49,7 +53,7 @@ class _Said(NamedTuple):
     location: Location
 
 
-def limit_facts(workspace: Workspace) -> Iterator[Fact]:
+def limit_facts(workspace: Workspace) -> Facts:
     """Yield the limits of joints that are wider than those of the robot."""
     if may_vary(workspace, "limit"):
         return
@@ -96,7 +100,6 @@ _JOINT_LIMIT = Rule(
     "joint-limit",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "The limits in a file are within those of the robot's joints.",
     why=(
         "MoveIt or ros2_control then allows motions that the joint is not made for. A "
@@ -117,7 +120,7 @@ joint_limits:
 )
 
 
-def _exchanged(limits: Sequence[_Said]) -> Iterator[Fact]:
+def _exchanged(limits: Sequence[_Said]) -> Facts:
     """Yield that the least position of a command interface is above the greatest one."""
     lowest = {said.joint: said for said in limits if said.name == "min_position"}
     for said in limits:
@@ -130,7 +133,7 @@ def _exchanged(limits: Sequence[_Said]) -> Iterator[Fact]:
             yield warning(_JOINT_LIMIT, message, lower.location, said.location)
 
 
-def _wider(said: _Said, robots: Sequence[KnownRobot]) -> Iterator[Fact]:
+def _wider(said: _Said, robots: Sequence[KnownRobot]) -> Facts:
     """Yield that every robot with the joint allows less than a file says."""
     joints = [
         wider_robot.robot.joint(said.joint)

@@ -1,6 +1,5 @@
 """Bodies of links: collisions beside their visuals, and masses without which Gazebo drops links."""
 
-from collections.abc import Iterator
 from math import dist
 
 from grader.base.quantities import in_millimetres
@@ -9,7 +8,11 @@ from grader.base.text import quoted
 from grader.ros.urdf.model import Joint, Link, Mesh, Robot
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     OTHER_VALUE,
     Rule,
@@ -19,7 +22,7 @@ _LEAST = 0.001  # metres
 _OF_LINK = 5  # parts
 
 
-def body_facts(workspace: Workspace) -> Iterator[Fact]:
+def body_facts(workspace: Workspace) -> Facts:
     """Yield collisions that are beside their visuals, and moving links that Gazebo drops."""
     said = set[tuple[str, int]]()  # of a macro, the first link
     for robot in workspace.robots.known:
@@ -37,7 +40,6 @@ def body_facts(workspace: Workspace) -> Iterator[Fact]:
 _COLLISION_PLACE = Rule(
     "collision-place",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "A collision with the shape of a visual is where that is.",
     why=(
@@ -62,7 +64,7 @@ _COLLISION_PLACE = Rule(
 )
 
 
-def _other_places(link: Link) -> Iterator[Mismatch]:
+def _other_places(link: Link) -> Mismatches:
     """Yield that the only collision of a link has the shape of its only visual in another place."""
     if len(link.visuals) != 1 or len(link.collisions) != 1:
         return
@@ -88,7 +90,6 @@ def _is_simulated(robot: KnownRobot) -> bool:
 _GAZEBO_INERTIA = Rule(
     "gazebo-inertia",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "A link that a joint moves in Gazebo has a mass.",
     why=(
@@ -126,7 +127,7 @@ _GAZEBO_INERTIA = Rule(
 )
 
 
-def _without_mass(robot: Robot) -> Iterator[Mismatch]:
+def _without_mass(robot: Robot) -> Mismatches:
     """Yield the first joint that moves links which have no mass, with what is fixed to them.
 
     A robot without any mass is a sketch.

@@ -1,12 +1,14 @@
 """Plugins of Nav2 that a parameter file configures: whether a list of the node names them."""
 
-from collections.abc import Iterator
-
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_EFFECT,
     Rule,
@@ -17,7 +19,7 @@ _LISTS = ("plugins", "filters")
 _COPIED = ("local_costmap", "static_layer")
 
 
-def listed_plugin_facts(workspace: Workspace) -> Iterator[Fact]:
+def listed_plugin_facts(workspace: Workspace) -> Facts:
     """Yield the layers of costmaps that are configured, and that no list of plugins names.
 
     The parameters of nav2_bringup, which many copy, have a static layer in the local costmap.
@@ -31,7 +33,6 @@ def listed_plugin_facts(workspace: Workspace) -> Iterator[Fact]:
 _PLUGIN_LISTED = Rule(
     "plugin-listed",
     "parameters",
-    NO_EFFECT,
     NO_EFFECT,
     "A list of plugins names each layer that is configured.",
     why=(
@@ -58,7 +59,7 @@ global_costmap:
 )
 
 
-def _unlisted(costmap: str, section: YamlNode) -> Iterator[Mismatch]:
+def _unlisted(costmap: str, section: YamlNode) -> Mismatches:
     """Yield the sections with a plugin that is in no list of a costmap."""
     plugins = section.get("plugins")
     if plugins is None or not plugins.items:

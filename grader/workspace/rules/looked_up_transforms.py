@@ -55,7 +55,6 @@ _TRANSFORM_CONNECTED = Rule(
     "transform-connected",
     "transforms",
     UNCONNECTED,
-    UNCONNECTED,
     "The frames between which a node looks up a transform are connected.",
     why=(
         "Each lookup fails with a ConnectivityException, because the two frames are not part of"

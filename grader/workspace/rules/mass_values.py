@@ -1,7 +1,6 @@
 """The centre of mass and the inertia of a link: whether they can be those of its shapes."""
 
 import re
-from collections.abc import Iterator
 from math import dist, hypot, sqrt
 
 from grader.base.quantities import in_millimetres, point
@@ -12,7 +11,11 @@ from grader.ros.urdf.mass_properties import Tensor, solid_inertia, turned, with_
 from grader.ros.urdf.model import Collision, Cylinder, Inertial, Link, Mesh, Visual
 from grader.ros.urdf.shapes import PlacedShape
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     OTHER_VALUE,
     Rule,
@@ -27,7 +30,7 @@ _OF_LINK = 20  # parts
 _TURNED_BY = re.compile(r"<origin\b[^<>]*?\brpy\s*=\s*[\"']\$\{\s*(\w+)\s*\}[\"']")
 
 
-def mass_facts(workspace: Workspace) -> Iterator[Fact]:
+def mass_facts(workspace: Workspace) -> Facts:
     """Yield centres of mass outside of the shapes, and inertias of a cylinder along another axis.
 
     A link with a mesh is not compared: only its file says what it is.
@@ -66,7 +69,6 @@ _CENTRE_OF_MASS = Rule(
     "centre-of-mass",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "The centre of mass of a link is within its shapes.",
     why=(
         "Gazebo simulates the mass where the link is not. The robot may tip over, swing or "
@@ -88,7 +90,7 @@ _CENTRE_OF_MASS = Rule(
 )
 
 
-def _centre_outside(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
+def _centre_outside(link: Link, inertial: Inertial) -> Mismatches:
     """Yield that the centre of mass is outside of the box around all shapes of a link."""
     placed = _placed_shapes(link)
     if not placed:
@@ -114,7 +116,6 @@ _INERTIA_PLACE = Rule(
     "inertia-place",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "The inertia of a shape about its middle has its <origin> there.",
     why=(
         "Gazebo simulates the mass at the origin of the link. An arm then loads its joint too "
@@ -137,7 +138,7 @@ _INERTIA_PLACE = Rule(
 )
 
 
-def _other_centre(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
+def _other_centre(link: Link, inertial: Inertial) -> Mismatches:
     """Yield that an inertia is that of the shape of a link about its middle, which is elsewhere.
 
     A centre of mass with an offset may be meant, one at the origin of the link is forgotten.
@@ -183,7 +184,6 @@ _INERTIA_SIZE = Rule(
     "inertia-size",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "The inertia of a link is that of a body of its size.",
     why=(
         "Gazebo simulates a body that hardly starts or stops to rotate. Joints respond slowly, "
@@ -205,7 +205,7 @@ _INERTIA_SIZE = Rule(
 )
 
 
-def _too_large(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
+def _too_large(link: Link, inertial: Inertial) -> Mismatches:
     """Yield an inertia that no body of the size of the shapes has, whatever is in it.
 
     A moment of inertia is at most the mass by the square of the distance of its farthest part.
@@ -244,7 +244,6 @@ _INERTIA_AXIS = Rule(
     "inertia-axis",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "The inertia of a cylinder is that about its own axis.",
     why=(
         "Gazebo resists rotation about the wrong axis. Wheels and arms accelerate too easily or"
@@ -266,7 +265,7 @@ _INERTIA_AXIS = Rule(
 )
 
 
-def _other_axis(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
+def _other_axis(link: Link, inertial: Inertial) -> Mismatches:
     """Yield that an inertia is that of the cylinder of a link along another axis than it has."""
     shapes = with_volume(link.collisions) or with_volume(link.visuals)
     if len(shapes) != 1:

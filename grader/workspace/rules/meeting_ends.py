@@ -3,7 +3,6 @@
 They agree in type and quality of service.
 """
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.ros.nodes.node_facts import EndpointKind
@@ -13,11 +12,15 @@ from grader.workspace.graph.graph import Graph, distinct, make_graph
 from grader.workspace.graph.node_ends import deciding_parameter
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.interfaces import is_absent
-from grader.workspace.rules.names import Compared, Fact, Mismatch
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    Mismatches,
+)
 from grader.workspace.rules.rule_table import (
     NO_SERVICE,
     NO_TOPIC,
-    SIMILAR,
     Rule,
 )
 
@@ -46,7 +49,6 @@ _TOPIC_TYPE = Rule(
     "topic-type",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "Publishers and subscriptions of a topic have one type.",
     is_of_type=True,
     why=(
@@ -69,7 +71,6 @@ _SERVICE_TYPE = Rule(
     "service-type",
     "services",
     NO_SERVICE,
-    SIMILAR,
     "A service or action is called with the type with which it is served.",
     is_of_type=True,
     why=(
@@ -107,7 +108,7 @@ _POLICIES = (
 )
 
 
-def meeting_facts(workspace: Workspace) -> Iterator[Fact]:
+def meeting_facts(workspace: Workspace) -> Facts:
     """Yield the ends that do not agree with another end of their name."""
     graph = make_graph(workspace)
     for meeting in (TOPICS, *SERVICES):
@@ -148,9 +149,7 @@ def _differ(asking: End, offering: End) -> bool:
     return None not in types and len(types) == 2
 
 
-def _other_type(
-    workspace: Workspace, meeting: Meeting, asking: End, offering: End
-) -> Iterator[Mismatch]:
+def _other_type(workspace: Workspace, meeting: Meeting, asking: End, offering: End) -> Mismatches:
     """Yield that an end of own code or a bridge asks for another type than is offered.
 
     Of a type that is nowhere, that is said instead.
@@ -173,7 +172,7 @@ def _other_type(
     )
 
 
-def _other_type_of_controller(asking: End, offering: End) -> Iterator[Mismatch]:
+def _other_type_of_controller(asking: End, offering: End) -> Mismatches:
     """Yield that a topic is published with another type than a controller reads."""
     if _differ(asking, offering):
         message = (
@@ -193,7 +192,6 @@ _TOPIC_QUALITY = Rule(
     "topic-quality",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A publisher offers the quality of service that a subscription needs.",
     why=(
         "The middleware does not connect the two. ROS 2 warns of incompatible QoS, and no "
@@ -213,7 +211,7 @@ self.create_subscription(Float64, 'speed', self.receive, best_effort)
 )
 
 
-def _other_quality(asking: End, offering: End) -> Iterator[Mismatch]:
+def _other_quality(asking: End, offering: End) -> Mismatches:
     """Yield the policies of a publisher that do not satisfy a subscription: no message arrives."""
     if asking.kind != "subscription":
         return
@@ -232,7 +230,7 @@ def _other_quality(asking: End, offering: End) -> Iterator[Mismatch]:
             yield wrong._replace(names=(asking.name,))
 
 
-def _other_type_of_bridge(graph: Graph) -> Iterator[Mismatch]:
+def _other_type_of_bridge(graph: Graph) -> Mismatches:
     """Yield topics that own code and a row of a bridge open with different types.
 
     A row of a file that no launch file names counts too, as far as all bridges keep their names.

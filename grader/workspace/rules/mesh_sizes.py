@@ -104,7 +104,6 @@ _MESH_UNIT = Rule(
     "mesh-unit",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "Meshes are in metres.",
     why=(
         "RViz and Gazebo show the mesh about 1000 times too large or too small. It covers the "

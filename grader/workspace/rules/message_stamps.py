@@ -4,17 +4,21 @@ Only code that never names a stamp, and makes its messages itself, surely sends 
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 from grader.base.source import Location, Source
 from grader.ros.known.package_rows import package_row
-from grader.ros.launch.launch_model import STATE_PUBLISHER
 from grader.workspace.graph.code_ends import End
 from grader.workspace.graph.graph import Graph, make_graph
 from grader.workspace.model.code_text import code_alone
 from grader.workspace.model.own_code import CPP_ENDINGS
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_MESSAGE,
     Rule,
@@ -35,7 +39,6 @@ _IGNORES = "ignore_timestamp"
 _MESSAGE_STAMP = Rule(
     "message-stamp",
     "messages",
-    NO_MESSAGE,
     NO_MESSAGE,
     "Messages and transforms have a stamp where what reads them needs it.",
     why=(
@@ -59,7 +62,7 @@ self.frames.sendTransform(frame)
 )
 
 
-def message_stamp_facts(workspace: Workspace) -> Iterator[Fact]:
+def message_stamp_facts(workspace: Workspace) -> Facts:
     """Yield messages and transforms without a stamp.
 
     robot_state_publisher publishes no transform for joint states that are as old as the last ones,
@@ -82,7 +85,7 @@ def message_stamp_facts(workspace: Workspace) -> Iterator[Fact]:
                     break
 
 
-def _of_messages(graph: Graph, sources: "_CodeSources") -> Iterator[Mismatch]:
+def _of_messages(graph: Graph, sources: "_CodeSources") -> Mismatches:
     """Yield the publishers of messages without a stamp, which a program needs."""
     said = set[Location]()
     publishers = [end for end in graph.certain("publisher", "code") if end.type in _STAMPED]
@@ -101,7 +104,7 @@ def _of_messages(graph: Graph, sources: "_CodeSources") -> Iterator[Mismatch]:
 
 def _compares_times(end: End) -> bool:
     """Return whether a program certainly compares the times of messages."""
-    if end.node.executable != STATE_PUBLISHER:
+    if not end.node.is_state_publisher:
         return package_row(end.node.package).compares_time
     for given in end.node.parameters or ():
         if given.path or given.unknown or _IGNORES in given.values:

@@ -1,15 +1,17 @@
 """Joints in <ros2_control> that mimic others: hardware_interface refuses commands of them."""
 
-from collections.abc import Iterator
-
 from grader.ros.known.releases import RELEASES
 from grader.ros.xml.parsing import Element
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    Mismatches,
+)
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -18,7 +20,7 @@ _SINCE = RELEASES.index("jazzy")
 _FALSE = ("false", "False", "0")
 
 
-def mimic_facts(workspace: Workspace) -> Iterator[Fact]:
+def mimic_facts(workspace: Workspace) -> Facts:
     """Yield the command interfaces of joints with <mimic>, unless they say mimic="false".
 
     It is certain for the stated releases, all of which refuse them.
@@ -40,7 +42,6 @@ _MIMIC_COMMAND = Rule(
     "mimic-command",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A joint that mimics another one has no command interface.",
     why=(
         "From Jazzy on ros2_control raises an error when it parses the robot. No hardware is "
@@ -74,7 +75,7 @@ _MIMIC_COMMAND = Rule(
 )
 
 
-def _find_commands(robot: KnownRobot, joint: Element, *, is_certain: bool) -> Iterator[Mismatch]:
+def _find_commands(robot: KnownRobot, joint: Element, *, is_certain: bool) -> Mismatches:
     interface = next(joint.iterchildren("command_interface"), None)
     if interface is not None and joint.get("mimic") not in _FALSE:
         name = joint.get("name", "")

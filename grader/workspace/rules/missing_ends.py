@@ -19,8 +19,9 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.meeting_ends import SERVICES, TOPICS, Meeting
 from grader.workspace.rules.names import (
     Definition,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     Open,
     Use,
     corrections,
@@ -28,7 +29,6 @@ from grader.workspace.rules.names import (
 from grader.workspace.rules.rule_table import (
     NO_SERVICE,
     NO_TOPIC,
-    SIMILAR,
     Rule,
 )
 
@@ -42,7 +42,7 @@ class _Offer(NamedTuple):
     launch: int  # -1 for a row of a bridge that no launch file starts
 
 
-def missing_end_facts(workspace: Workspace) -> Iterator[Fact]:
+def missing_end_facts(workspace: Workspace) -> Facts:
     """Yield the ends that nothing answers, where what they surely mean waits under another name."""
     graph = make_graph(workspace)
     subscriptions, publishers = TOPICS.ends(graph)
@@ -54,7 +54,7 @@ def missing_end_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _without_publisher(
     graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
-) -> Iterator[Fact]:
+) -> Facts:
     """Yield subscriptions to unpublished topics where a similar one is published.
 
     The similar topic is one that is not subscribed to.
@@ -91,7 +91,6 @@ _TOPIC_PUBLISHED = Rule(
     "topic-published",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "The topic that a node subscribes to is published.",
     why=(
         "The subscription waits without an error, and its callback is never called. ros2 topic "
@@ -109,7 +108,7 @@ self.create_subscription(Twist, 'cmd_vel', self.receive, 10)
 )
 
 
-def _similar_topic(workspace: Workspace, end: End, alike: Sequence[_Offer]) -> Iterator[Fact]:
+def _similar_topic(workspace: Workspace, end: End, alike: Sequence[_Offer]) -> Facts:
     """Yield the topic that a subscription surely means, of those of its type.
 
     Else yield that it uses its own, to which a similar name may be a correction.
@@ -152,7 +151,7 @@ def _no_other_end(rule: Rule, what: str, end: End, meant: str, at: Location) -> 
 
 def _without_subscription(
     graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield publishers that nothing subscribes to, where a controller waits on another topic.
 
     The controller waits for such messages there.
@@ -172,7 +171,7 @@ def _without_subscription(
 
 def _meant_for(
     graph: Graph, waiting: End, unheard: Sequence[End], named: set[Location]
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield the publishers that mean the topic of a controller; `named` are those of others."""
     fitting = graph.alike(waiting, unheard)
     for publisher in fitting:
@@ -188,7 +187,6 @@ _TOPIC_SUBSCRIBED = Rule(
     "topic-subscribed",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "The topic that a node publishes is the one that a controller waits for.",
     why=(
         "Commands are published, and the robot does not move. ros2 topic info shows a "
@@ -237,7 +235,7 @@ def _may_be_of_gazebo(workspace: Workspace, publisher: End, waiting: End) -> boo
     return is_same and workspace.robots.has_controllers_in_gazebo
 
 
-def _without_server(graph: Graph, meeting: Meeting) -> Iterator[Mismatch]:
+def _without_server(graph: Graph, meeting: Meeting) -> Mismatches:
     """Yield that nothing serves what a client calls, where a server waits under another name.
 
     The server has the type of the client, and there is one such name only. It is certain where
@@ -256,7 +254,6 @@ _SERVICE_SERVED = Rule(
     "service-served",
     "services",
     NO_SERVICE,
-    SIMILAR,
     "The service or action that a node calls is served.",
     why=(
         "The client waits for a server that does not exist: wait_for_service() or "
@@ -276,7 +273,7 @@ self.client = self.create_client(Trigger, 'stop')
 
 def _served_elsewhere(
     graph: Graph, meeting: Meeting, client: End, uncalled: Sequence[End]
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that the server of a client's type waits under one other name."""
     alike = {end.name: end for end in reversed(graph.alike(client, uncalled))}
     if len(alike) != 1 or _may_be_served(graph.workspace, meeting, client, alike):

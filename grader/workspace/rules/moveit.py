@@ -12,11 +12,17 @@ from grader.ros.known.releases import is_before
 from grader.workspace.graph.compared_robots import robots_for_file
 from grader.workspace.graph.started_controllers import defined_controllers
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Fact, Mismatch, Use, among, corrections
+from grader.workspace.rules.names import (
+    Facts,
+    Mismatch,
+    Mismatches,
+    Use,
+    among,
+    corrections,
+)
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
     NO_PARAMETER,
-    SIMILAR,
     Rule,
 )
 from grader.workspace.rules.spawners import started_controllers
@@ -27,7 +33,7 @@ _OF_PIPELINE = "_planning.yaml"  # MoveItConfigsBuilder finds the files by their
 _TABLES_OF_JOINTS = ("joint_limits", "initial_positions")
 
 
-def moveit_facts(workspace: Workspace) -> Iterator[Fact]:
+def moveit_facts(workspace: Workspace) -> Facts:
     """Yield what the YAML files of a configuration for MoveIt name, if a robot is known."""
     if not workspace.robots.known:
         return
@@ -51,7 +57,6 @@ _PLANNING_LIST = Rule(
     "planning-list",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The adapters of a planning pipeline of MoveIt are a list from Jazzy on.",
     is_of_type=True,
     why=(
@@ -73,7 +78,7 @@ request_adapters: [default_planning_request_adapters/ValidateWorkspaceBounds]
 )
 
 
-def _text_for_list(workspace: Workspace, tree: YamlNode) -> Iterator[Mismatch]:
+def _text_for_list(workspace: Workspace, tree: YamlNode) -> Mismatches:
     """Yield that the file of a pipeline has the form of Humble, and all stated releases are later.
 
     planning_pipeline_parameters.yaml of Jazzy declares a list: ParameterTypeException.
@@ -142,7 +147,6 @@ _MOVEIT_CONTROLLER = Rule(
     "moveit-controller",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A spawner starts the controllers that MoveIt commands.",
     why=(
         "Planning succeeds and execution fails: MoveIt waits for an action that no controller "
@@ -180,7 +184,7 @@ hand_controller:
 )
 
 
-def _not_started(controller: _MoveItController, left_out: Collection[str]) -> Iterator[Mismatch]:
+def _not_started(controller: _MoveItController, left_out: Collection[str]) -> Mismatches:
     """Yield that no spawner starts a controller, while one starts others that move joints."""
     if controller.name in left_out:
         message = (
@@ -207,7 +211,6 @@ _MOVEIT_ACTION = Rule(
     "moveit-action",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "MoveIt names the action of its controller.",
     why=(
         "MoveIt ignores the controller or waits for an action that does not exist. It plans, "
@@ -231,7 +234,7 @@ moveit_simple_controller_manager:
 )
 
 
-def _other_action(controller: _MoveItController) -> Iterator[Mismatch]:
+def _other_action(controller: _MoveItController) -> Mismatches:
     """Yield that MoveIt sends the goals of a controller to no action, or to one that is not there.
 
     moveit_simple_controller_manager.cpp of Humble and Jazzy leaves out one without action_ns.
@@ -268,7 +271,6 @@ _MOVEIT_JOINTS = Rule(
     "moveit-joints",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "MoveIt gives a controller the joints that it has.",
     why=(
         "The controller rejects trajectories for joints that it does not have, or MoveIt finds "
@@ -299,7 +301,7 @@ moveit_simple_controller_manager:
 )
 
 
-def _other_joints(workspace: Workspace, controller: _MoveItController) -> Iterator[Mismatch]:
+def _other_joints(workspace: Workspace, controller: _MoveItController) -> Mismatches:
     """Yield that MoveIt gives a controller other joints than it has, all of which are in the robot.
 
     MoveIt sends no goals for joints that follow others.

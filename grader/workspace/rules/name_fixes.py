@@ -22,6 +22,7 @@ _OF_PACKAGE = re.compile(r"\b(?:package|pkg)\s*=\s*[\"']$")
 _SEPARATED = re.compile(r".*[./:]")
 # Files in which a name stands several times for one thing.
 _WITH_ALL = (f"/{CMAKE}", f"/{MANIFEST}")
+_Span = tuple[int, int]  # the offsets of the first character and after the last one
 
 
 class NameFixes:
@@ -29,7 +30,7 @@ class NameFixes:
 
     def __init__(self, workspace: Workspace) -> None:
         self._workspace = workspace
-        self._calls: dict[str, Mapping[tuple[int, int], int]] = {}  # the ends of those in each file
+        self._calls: dict[str, Mapping[_Span, int]] = {}  # the ends of those in each file
 
     @cached_property
     def sources(self) -> list[Source]:
@@ -112,7 +113,7 @@ class NameFixes:
 
     def _span_inside(
         self, source: Source, at: Location, word: str, *, of_package: bool = False
-    ) -> tuple[int, int] | None:
+    ) -> _Span | None:
         """Return where a word is in the call of Python, or the start tag, at a place.
 
         A program may be called as its package: `of_package` says which is meant.
@@ -123,7 +124,7 @@ class NameFixes:
         if not inside or inside[0][0] <= start + 1:
             return None  # the place is that of the word, or of its quote
         texts = [span for span in inside if _is_whole_text(source.text, span)]
-        meant: list[tuple[int, int]] = []
+        meant: list[_Span] = []
         for span in texts:
             before = source.text[max(0, span[0] - _MAX_ATTRIBUTE) : span[0]]
             if (_OF_PACKAGE.search(before) is not None) == of_package:
@@ -140,7 +141,7 @@ class NameFixes:
             self._calls[at.path] = ends_of_calls(source)
         return self._calls[at.path].get((at.line, at.column), start)
 
-    def _spans_at(self, source: Source, at: Location, word: str) -> list[tuple[int, int]]:
+    def _spans_at(self, source: Source, at: Location, word: str) -> list[_Span]:
         """Return the occurrences of a word that a place is about."""
         spans = _spans(source, word)
         if f"/{at.path}".endswith(_WITH_ALL):
@@ -163,7 +164,7 @@ class NameFixes:
     def _only_edit(self, correction: Correction) -> Edits:
         """Return the edit of a name in the one place where packages write it."""
         old, new = correction.old.strip("/"), correction.new.strip("/")
-        places: list[tuple[Source, tuple[int, int]]] = []
+        places: list[tuple[Source, _Span]] = []
         for source in self.sources:
             places += [(source, span) for span in _spans(source, old)]
         if len(places) != 1:
@@ -172,13 +173,13 @@ class NameFixes:
         return (source.edit(*span, new),)
 
 
-def _is_whole_text(text: str, span: tuple[int, int]) -> bool:
+def _is_whole_text(text: str, span: _Span) -> bool:
     """Return whether a word is all that stands in its quotes."""
     start, end = span
     return start > 0 and text[start - 1] in "\"'" and text[end : end + 1] == text[start - 1]
 
 
-def _spans(source: Source, name: str) -> list[tuple[int, int]]:
+def _spans(source: Source, name: str) -> list[_Span]:
     whole = re.compile(rf"(?<![\w-]){re.escape(name)}(?![\w-]|\.\w)")
     return [match.span() for match in whole.finditer(source.text)]
 
@@ -195,9 +196,7 @@ def _as_written(old: str, new: str) -> Iterator[tuple[str, str]]:
         yield old[shared.end() :], new[shared.end() :]
 
 
-def _meant(
-    text: str, name: str, spans: Sequence[tuple[int, int]], at: int
-) -> list[tuple[int, int]]:
+def _meant(text: str, name: str, spans: Sequence[_Span], at: int) -> list[_Span]:
     """Return the occurrence of a name that a place is about.
 
     This is its key, else the first behind the place, or the last before it.

@@ -3,14 +3,17 @@
 docs/examples/ref.toml explains their kinds.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 
 from grader.base.problems import Problem
 from grader.base.text import in_quotes
 from grader.ros.package.package import MANIFEST
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.name_fixes import NameFixes
-from grader.workspace.rules.names import Mismatch
+from grader.workspace.rules.names import (
+    Mismatch,
+    Mismatches,
+)
 from grader.workspace.rules.reading import read_agreement
 from grader.workspace.rules.rule_table import (
     UNUSED,
@@ -20,7 +23,6 @@ from grader.workspace.rules.rule_table import (
 _FILE_USED = Rule(
     "file-used",
     "files",
-    UNUSED,
     UNUSED,
     "Another file names each file of the robot.",
     why=(
@@ -76,9 +78,7 @@ def name_problems(workspace: Workspace) -> tuple[Problem, ...]:
     return tuple(by_place.values())
 
 
-def _with_one_for_a_manifest(
-    workspace: Workspace, mismatches: Iterable[Mismatch]
-) -> Iterator[Mismatch]:
+def _with_one_for_a_manifest(workspace: Workspace, mismatches: Iterable[Mismatch]) -> Mismatches:
     """Yield mismatches, of the packages that one package.xml lacks only the first, which has all.
 
     Those of which it is certain that nothing else installs them are apart from the others, and so
@@ -99,7 +99,7 @@ def _with_one_for_a_manifest(
             yield mismatch._replace(message=message, names=names)
 
 
-def _without_repeated_packages(mismatches: Sequence[Mismatch]) -> Iterator[Mismatch]:
+def _without_repeated_packages(mismatches: Sequence[Mismatch]) -> Mismatches:
     """Yield mismatches without those that say of a package what another one says.
 
     Of a package that nothing has, it drops that package.xml does not declare it; of a misspelt

@@ -21,7 +21,6 @@ from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
     NO_PROGRAM,
     NO_TOPIC,
-    SIMILAR,
     AnyFamily,
     DefinedKind,
     Rule,
@@ -34,7 +33,6 @@ _FRAME_DEFINED = Rule(
     "frame-defined",
     "frames",
     NO_FRAME,
-    SIMILAR,
     "The frames that files name exist.",
     why=(
         "tf2 has no transform for a frame that nothing publishes: lookups fail with "
@@ -60,7 +58,6 @@ _LINK_DEFINED = Rule(
     "link-defined",
     "frames",
     NO_FRAME,
-    SIMILAR,
     "The links that files name are in the robot.",
     why=(
         "Gazebo ignores a <gazebo> element for an unknown link, so its friction or sensor is "
@@ -75,7 +72,6 @@ JOINT_DEFINED = Rule(
     "joint-defined",
     "frames",
     NO_FRAME,
-    SIMILAR,
     "The joints that files name are in the robot.",
     why=(
         "A controller cannot claim the interfaces of an unknown joint, so it does not become "
@@ -99,7 +95,6 @@ _GROUP_DEFINED = Rule(
     "group-defined",
     "frames",
     NO_FRAME,
-    SIMILAR,
     "The groups that files name are in the SRDF.",
     why=(
         "MoveIt looks up solvers and planners by the name of the group. Settings under another "
@@ -124,7 +119,6 @@ _CONTROLLER_DEFINED = Rule(
     "controller-defined",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "The controllers that files name are defined.",
     why=(
         "The controller manager prints that the 'type' param was not defined, the spawner ends "
@@ -149,7 +143,6 @@ _PARAMETER_DEFINED = Rule(
     "parameter-defined",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "A node declares the parameters that it is given and those that its code reads.",
     why=(
         "ROS 2 ignores a value for an undeclared parameter without a message, so the default "
@@ -166,7 +159,6 @@ _PLUGIN_SECTION = Rule(
     "plugin-section",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The plugins of a list have a section beside it.",
     why=(
         "Nav2 reads the class of a plugin from its section. Without it the node prints that it "
@@ -189,7 +181,6 @@ _LAUNCH_ARGUMENT = Rule(
     "launch-argument",
     "arguments",
     NO_ARGUMENT,
-    SIMILAR,
     "The arguments that an include passes are declared.",
     why=(
         "An include accepts unknown arguments without a message. The included file uses its "
@@ -213,7 +204,6 @@ _XACRO_ARGUMENT = Rule(
     "xacro-argument",
     "arguments",
     NO_ARGUMENT,
-    SIMILAR,
     "The arguments that xacro gets are declared.",
     why=(
         "xacro accepts unknown arguments without a message. The robot is built with its "
@@ -264,7 +254,6 @@ _NODE_STARTED = Rule(
     "node-started",
     "programs",
     NO_PROGRAM,
-    SIMILAR,
     "A launch file starts the nodes that a lifecycle manager manages.",
     why=(
         "The lifecycle manager waits for the services of a node that nothing starts. It "
@@ -292,7 +281,6 @@ _TOPIC_DEFINED = Rule(
     "topic-defined",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A node has the topic that a remapping replaces, and what code reads is published.",
     why=(
         "A remapping without a match changes nothing and prints nothing. The node keeps its own"
@@ -451,6 +439,9 @@ class Counted(NamedTuple):
 
 
 Fact = Definition | Use | Open | Pattern | Mismatch | Compared | Undecided | Counted
+# What the readers of rules yield.
+Facts = Iterator[Fact]
+Mismatches = Iterator[Mismatch]
 
 
 class Agreement(NamedTuple):

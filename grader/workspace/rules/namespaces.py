@@ -10,15 +10,18 @@ from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import is_section_key
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+)
 from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
-    SIMILAR,
     Rule,
 )
 
 
-def namespace_facts(workspace: Workspace) -> Iterator[Fact]:
+def namespace_facts(workspace: Workspace) -> Facts:
     """Yield the parameter files that have a section of a node's name, not in its namespace.
 
     rcl compares the full names, so the node gets none of its parameters.
@@ -41,7 +44,6 @@ _PARAMETER_NAMESPACE = Rule(
     "parameter-namespace",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The section of a node has the node's namespace.",
     why=(
         "rcl compares the key with the full name of the node. The node ignores the section "

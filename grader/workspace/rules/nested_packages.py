@@ -1,12 +1,14 @@
 """Packages in the folder of another package, where colcon does not look for them."""
 
-from collections.abc import Iterator
-
 from grader.base.source import Location
 from grader.ros.package.finding import IGNORING
 from grader.ros.package.package import MANIFEST
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NOT_BUILT,
     Rule,
@@ -16,7 +18,6 @@ from grader.workspace.rules.used_packages import OF_TESTS
 _PACKAGE_NESTED = Rule(
     "package-nested",
     "builds",
-    NOT_BUILT,
     NOT_BUILT,
     "No package is below the folder of another one, where colcon does not look.",
     why=(
@@ -43,7 +44,7 @@ _PACKAGE_NESTED = Rule(
 )
 
 
-def nested_package_facts(workspace: Workspace) -> Iterator[Fact]:
+def nested_package_facts(workspace: Workspace) -> Facts:
     """Yield the packages that are below another one: colcon does not search the folder of one.
 
     Those for tests, those that colcon is told to ignore, and those that CMakeLists.txt of the other

@@ -1,12 +1,14 @@
 """Names of Ignition in robots, models and worlds of a workspace that uses Gazebo."""
 
-from collections.abc import Iterator
-
 from grader.base.source import Location
 from grader.base.text import counted
 from grader.workspace.graph.gazebo_topics import roots
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     FORM,
     Rule,
@@ -21,7 +23,6 @@ _NEWER = ("gz::sim::", "gz-sim-", "libgz-sim-")
 _OLDER_GAZEBO = Rule(
     "older-gazebo",
     "words",
-    FORM,
     FORM,
     "Plugins have the names of Gazebo, where the workspace uses that in place of Ignition.",
     why=(
@@ -40,7 +41,7 @@ _OLDER_GAZEBO = Rule(
 )
 
 
-def older_gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
+def older_gazebo_facts(workspace: Workspace) -> Facts:
     """Yield the first plugin that has a name of Ignition beside names of Gazebo.
 
     Gazebo loads it with a warning until a later release. Names of Gazebo are those of other plugins

@@ -13,7 +13,12 @@ from grader.ros.launch.launch_model import Launch
 from grader.ros.python.parse import Code, lines_of_docstrings, parse
 from grader.workspace.model.stated_releases import releases_in_path
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     ONE_MACHINE,
     Rule,
@@ -69,7 +74,7 @@ class _TopicNames:
         return {name for name in names if name is not None}
 
 
-def machine_facts(workspace: Workspace) -> Iterator[Fact]:
+def machine_facts(workspace: Workspace) -> Facts:
     """Yield paths in home folders and environment variables that a launch file needs.
 
     A path in somebody's home folder is yielded once a file. Names of topics and services are no
@@ -121,7 +126,6 @@ _HOME_PATH = Rule(
     "home-path",
     "machine",
     ONE_MACHINE,
-    ONE_MACHINE,
     "No file names a folder of one user's machine.",
     why=(
         "The folder does not exist for another user, in a container or on the robot. The "
@@ -133,7 +137,7 @@ _HOME_PATH = Rule(
 )
 
 
-def _home_values(launch: Launch, topics: _TopicNames) -> Iterator[Mismatch]:
+def _home_values(launch: Launch, topics: _TopicNames) -> Mismatches:
     """Yield the first value of a parameter in a launch file that is a path in a home folder."""
     said = {reference.location for reference in launch.references}
     for node in launch.nodes:
@@ -163,7 +167,6 @@ _RELEASE_PATH = Rule(
     "release-path",
     "machine",
     ONE_MACHINE,
-    ONE_MACHINE,
     "Files of ROS 2 are found by packages, and not in a release's folder.",
     why=(
         "The folder is missing where another release is installed, so the file is not found. If"
@@ -177,7 +180,7 @@ self.tree = '/opt/ros/humble/share/nav2_bt_navigator/behavior_trees/follow_point
 )
 
 
-def _release_paths(source: Source, releases: Sequence[Release]) -> Iterator[Mismatch]:
+def _release_paths(source: Source, releases: Sequence[Release]) -> Mismatches:
     """Yield the first path of a file in the folder of another release than the workspace is for.
 
     Code that names the right release, or asks for it, may choose between paths.
@@ -207,7 +210,7 @@ def _is_code(source: Source, offset: int) -> bool:
     return not isinstance(code, Code) or source.at(offset).line not in lines_of_docstrings(code)
 
 
-def _home_paths(source: Source, said: Collection[str], topics: _TopicNames) -> Iterator[Mismatch]:
+def _home_paths(source: Source, said: Collection[str], topics: _TopicNames) -> Mismatches:
     """Yield that a file names paths in somebody's home folder, at the first of them.
 
     Those that are part of what is said otherwise do not count.
@@ -240,7 +243,6 @@ _ENVIRONMENT_VARIABLE = Rule(
     "environment-variable",
     "machine",
     ONE_MACHINE,
-    ONE_MACHINE,
     "A launch file gives an environment variable a default.",
     why=(
         "Where the variable is not set, ros2 launch stops with an error such as KeyError. It "
@@ -263,7 +265,7 @@ Node(package='turtlesim', executable='turtlesim_node', name=os.environ.get('ROVE
 )
 
 
-def _variables(workspace: Workspace) -> Iterator[Mismatch]:
+def _variables(workspace: Workspace) -> Mismatches:
     """Yield the environment variables that launch files need, and do not set or look for.
 
     Each is yielded once, with the first file that needs it.

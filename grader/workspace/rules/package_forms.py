@@ -1,14 +1,18 @@
 """The form of package.xml, setup.py and setup.cfg: what the tools accept and warn of, or ignore."""
 
 import re
-from collections.abc import Iterator
 
 from grader.base.source import Source
 from grader.base.text import cut, enumerated, quoted
 from grader.ros.installation.manifest import DeclaredDependency, Manifest
 from grader.ros.package.setup_version import versions_in
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     FORM,
     NO_BUILD,
@@ -24,7 +28,6 @@ _MAX_SHOWN = 40  # characters of a text
 _PYTHON_BUILD_TYPE = Rule(
     "python-build-type",
     "builds",
-    NO_BUILD,
     NO_BUILD,
     "package.xml of a package with setup.py has a build type.",
     why=(
@@ -54,7 +57,7 @@ _PYTHON_BUILD_TYPE = Rule(
 )
 
 
-def package_form_facts(workspace: Workspace) -> Iterator[Fact]:
+def package_form_facts(workspace: Workspace) -> Facts:
     """Yield what is of no use or deprecated in the files of packages of ROS 2.
 
     These are dependencies that are declared twice, texts between elements, names with capitals,
@@ -86,7 +89,6 @@ _DEPENDENCY_ONCE = Rule(
     "dependency-once",
     "builds",
     FORM,
-    FORM,
     "package.xml declares a dependency once.",
     why=(
         "The second line has no effect. If only one of the two is removed, the dependency is still "
@@ -105,7 +107,7 @@ _DEPENDENCY_ONCE = Rule(
 )
 
 
-def _repeated_dependencies(manifest: Manifest) -> Iterator[Mismatch]:
+def _repeated_dependencies(manifest: Manifest) -> Mismatches:
     """Yield the dependencies that a package.xml declares again, under no condition."""
     repeated: list[DeclaredDependency] = []
     first: dict[tuple[str, str], DeclaredDependency] = {}
@@ -124,7 +126,6 @@ _MANIFEST_TEXT = Rule(
     "manifest-text",
     "builds",
     FORM,
-    FORM,
     "package.xml has no text beside its elements.",
     why=(
         "The tools ignore the text without a message. A dependency that is written there is "
@@ -142,7 +143,7 @@ needs a joystick
 )
 
 
-def _loose_texts(manifest: Manifest) -> Iterator[Mismatch]:
+def _loose_texts(manifest: Manifest) -> Mismatches:
     """Yield the first text between elements of a package.xml."""
     for text, at in manifest.loose_texts[:1]:
         shown = quoted(cut(text, _MAX_SHOWN))
@@ -153,7 +154,6 @@ def _loose_texts(manifest: Manifest) -> Iterator[Mismatch]:
 _PACKAGE_NAME = Rule(
     "package-name",
     "builds",
-    FORM,
     FORM,
     "The name of a package has small letters, digits and underscores.",
     why=(
@@ -184,7 +184,7 @@ _PACKAGE_NAME = Rule(
 )
 
 
-def _capital_names(manifest: Manifest) -> Iterator[Mismatch]:
+def _capital_names(manifest: Manifest) -> Mismatches:
     """Yield a name of which catkin_pkg warns."""
     if manifest.name is not None and _NAME.fullmatch(manifest.name) is None:
         message = (
@@ -197,7 +197,6 @@ def _capital_names(manifest: Manifest) -> Iterator[Mismatch]:
 _PACKAGE_VERSION = Rule(
     "package-version",
     "builds",
-    FORM,
     FORM,
     "setup.py has the version that package.xml has.",
     why=(
@@ -238,7 +237,7 @@ setup(
 )
 
 
-def _other_versions(manifest: Manifest, setup: Source) -> Iterator[Mismatch]:
+def _other_versions(manifest: Manifest, setup: Source) -> Mismatches:
     """Yield that setup() in setup.py is given another version than package.xml has."""
     for version in versions_in(setup) if manifest.version else ():
         if version.text != manifest.version:
@@ -249,7 +248,6 @@ def _other_versions(manifest: Manifest, setup: Source) -> Iterator[Mismatch]:
 _SETUP_KEY = Rule(
     "setup-key",
     "builds",
-    FORM,
     FORM,
     "The keys of setup.cfg have underscores, and no dashes.",
     why=(
@@ -272,7 +270,7 @@ install_scripts=$base/lib/rover
 )
 
 
-def _dashed_keys(source: Source) -> Iterator[Mismatch]:
+def _dashed_keys(source: Source) -> Mismatches:
     """Yield the first key with a dash."""
     dashed = _DASHED.search(source.text)
     if dashed is not None:

@@ -11,11 +11,14 @@ from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import YamlValue, sections_in, values_in
 from grader.ros.launch.node_parameters import value_in_file
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Fact, Mismatch
+from grader.workspace.rules.names import (
+    Facts,
+    Mismatch,
+    Mismatches,
+)
 from grader.workspace.rules.parameters import parameter_trees
 from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
-    SIMILAR,
     Rule,
 )
 
@@ -23,7 +26,7 @@ _RCL_TYPES = {bool: "bool", int: "integer", float: "double", str: "string"}
 _IN_WORDS = {bool: "booleans", int: "integers", float: "doubles", str: "strings"}
 
 
-def list_facts(workspace: Workspace) -> Iterator[Fact]:
+def list_facts(workspace: Workspace) -> Facts:
     """Yield the values in the parameter files of nodes that rcl refuses, with the whole file.
 
     A value with a tag is not compared: Lyrical reads some.
@@ -42,7 +45,6 @@ _PARAMETER_LIST = Rule(
     "parameter-list",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "A list in a parameter file has values of one type, and a key has a value.",
     why=(
         "rcl refuses the whole file, for example with 'Sequence should be of same type', so the"
@@ -66,7 +68,7 @@ pilot:
 )
 
 
-def _refused_list(value: YamlValue) -> Iterator[Mismatch]:
+def _refused_list(value: YamlValue) -> Mismatches:
     """Yield the first entry of a list that rcl does not take."""
     items = value.node.items
     for item, following in pairwise(items):
@@ -124,7 +126,7 @@ def _choose_type(node: YamlNode) -> type[object] | None:
     return kind if kind in _RCL_TYPES else None
 
 
-def _without_value(value: YamlValue) -> Iterator[Mismatch]:
+def _without_value(value: YamlValue) -> Mismatches:
     """Yield that a key, or an entry of a list, has no value."""
     for text, node in value.texts():
         if not text and not node.is_string and not node.has_type:

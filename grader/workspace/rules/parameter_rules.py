@@ -24,6 +24,7 @@ from grader.ros.python.parse import START
 from grader.ros.python.values import Unknown
 from grader.workspace.rules.names import (
     Mismatch,
+    Mismatches,
     corrections,
     warning,
 )
@@ -32,7 +33,6 @@ from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
     NO_SUCH_PARAMETER,
     OTHER_RELEASE,
-    SIMILAR,
     Rule,
 )
 
@@ -119,7 +119,6 @@ _PARAMETER_NAME = Rule(
     "parameter-name",
     "parameters",
     NO_SUCH_PARAMETER,
-    NO_SUCH_PARAMETER,
     "The parameters of a well-known node are those that it has.",
     why=(
         "ROS 2 ignores a value for an undeclared parameter without a message. The node runs "
@@ -134,7 +133,7 @@ Node(package='robot_localization', executable='ekf_node', parameters=[{'two_d_mo
 )
 
 
-def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismatch]:
+def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Mismatches:
     """Yield what is wrong with the parameters of a node in each of the stated releases.
 
     Without a stated release, it is all that the rows are of. A value that is right in one of them
@@ -185,7 +184,6 @@ def default_in(given: GivenNode, name: str, release: Release) -> Any:
 _PARAMETER_RELEASE = Rule(
     "parameter-release",
     "parameters",
-    OTHER_RELEASE,
     OTHER_RELEASE,
     "The parameters of a well-known node are those of the stated release.",
     why=(
@@ -249,7 +247,6 @@ PARAMETER_REQUIRED = Rule(
     "parameter-required",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "A node gets the parameters without which it stops.",
     why=(
         "The node prints an error and ends, so ros2 launch reports that the process has died. A"
@@ -269,7 +266,6 @@ PARAMETER_TYPE = Rule(
     "parameter-type",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "A parameter has the type that its node declares.",
     is_of_type=True,
     why=(
@@ -287,7 +283,6 @@ _PARAMETER_VALUE = Rule(
     "parameter-value",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "A parameter has a value that its node accepts.",
     why=(
         "The node validates the value and refuses it with an error at its start. It stops, or "
@@ -701,7 +696,6 @@ class _NodeReader:
 _PARAMETER_EFFECT = Rule(
     "parameter-effect",
     "parameters",
-    NO_EFFECT,
     NO_EFFECT,
     "The parameters of a well-known node have an effect under the values of others.",
     why=(

@@ -37,8 +37,9 @@ from grader.workspace.rules.names import (
     DEFINED,
     Compared,
     Definition,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     Open,
     Undecided,
     Use,
@@ -50,7 +51,6 @@ from grader.workspace.rules.parameter_rules import PARAMETER_REQUIRED, PARAMETER
 from grader.workspace.rules.renamed_nodes import key_of_program_name
 from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
-    SIMILAR,
     Rule,
 )
 
@@ -69,7 +69,7 @@ _LISTS = ("plugins", "navigators", _SOURCES, "filters", "controller_names")
 _NOT_LISTS = ("plugin_lib_names",)
 
 
-def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
+def parameter_facts(workspace: Workspace) -> Facts:
     """Yield what parameter files have for nodes, what own nodes declare, and lists of plugins."""
     yield from _unreadable_files(workspace)
     for _ in workspace.parameters.files:
@@ -99,7 +99,6 @@ _PARAMETER_FILE = Rule(
     "parameter-file",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "An installed YAML file can be parsed, and a parameter file has no aliases.",
     why=(
         "A node that gets the file ends at its start with 'Couldn't parse params file'. A "
@@ -123,7 +122,7 @@ pilot:
 )
 
 
-def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
+def _unreadable_files(workspace: Workspace) -> Mismatches:
     """Yield installed YAML files that cannot be parsed, and aliases in parameter files.
 
     rcl refuses aliases.
@@ -176,7 +175,7 @@ def _files_of_controllers(workspace: Workspace) -> list[str]:
     return sorted(files)
 
 
-def _plugins(workspace: Workspace) -> Iterator[Fact]:
+def _plugins(workspace: Workspace) -> Facts:
     """Yield what lists of plugins name, and plugins that pluginlib does not know.
 
     pluginlib does not know them as they are written.
@@ -223,7 +222,7 @@ def _is_given_alone(workspace: Workspace, path: str) -> bool:
 
 def _sections_of_others(
     workspace: Workspace, path: str, nodes: Sequence[StartedNode]
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that a parameter file has something only for a node that is not given it.
 
     It has nothing for a node that is given it.
@@ -313,7 +312,6 @@ _PARAMETER_NODE = Rule(
     "parameter-node",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "A parameter file has a section for the node that gets it.",
     why=(
         "A node ignores sections with other names without a message. It starts with the "
@@ -403,7 +401,6 @@ _PARAMETER_KEY = Rule(
     "parameter-key",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The parameters of a node are below one key ros__parameters.",
     why=(
         "rcl refuses the whole file with an error such as 'Cannot have a value before "
@@ -426,7 +423,7 @@ pilot:
 )
 
 
-def _misplaced_keys(tree: YamlNode) -> Iterator[Mismatch]:
+def _misplaced_keys(tree: YamlNode) -> Mismatches:
     """Yield values of a parameter file that are not below ros__parameters.
 
     Keys ros__parameters that are misspelt, and those inside of others, are yielded too.
@@ -464,7 +461,7 @@ def _misplaced_key(name: str, node: YamlNode, key: str, *, is_below: bool) -> Mi
     return None
 
 
-def _declared(node: StartedNode, own_node: NodeFacts) -> Iterator[Fact]:
+def _declared(node: StartedNode, own_node: NodeFacts) -> Facts:
     """Yield the parameters that a node of the workspace declares and reads.
 
     One for which the node asks has_parameter() need not be declared.
@@ -486,9 +483,7 @@ def _declared(node: StartedNode, own_node: NodeFacts) -> Iterator[Fact]:
         yield Definition("parameter", name, own_node.location, owner)
 
 
-def _given(
-    workspace: Workspace, package: Package, node: StartedNode, own_node: NodeFacts
-) -> Iterator[Fact]:
+def _given(workspace: Workspace, package: Package, node: StartedNode, own_node: NodeFacts) -> Facts:
     """Yield the parameters that a node of the workspace is given."""
     owner = f"{node.package}/{node.executable}"
     if _may_declare_more(workspace, node, own_node):
@@ -590,7 +585,7 @@ def _not_given(
     node: StartedNode,
     own_node: NodeFacts,
     values: Mapping[str, ParameterValue] | None,
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield the parameters that a node declares without a value, reads, and is not given.
 
     rclpy and rclcpp raise ParameterUninitializedException. Nothing is said where `values` is
@@ -617,7 +612,7 @@ def _not_given(
             )
 
 
-def _types_given(node: NodeFacts, values: Mapping[str, ParameterValue]) -> Iterator[Mismatch]:
+def _types_given(node: NodeFacts, values: Mapping[str, ParameterValue]) -> Mismatches:
     """Yield the values of other types than a node declares."""
     for parameter in node.parameters:
         name = parameter.name or ""
@@ -631,7 +626,7 @@ def _types_given(node: NodeFacts, values: Mapping[str, ParameterValue]) -> Itera
             )
 
 
-def _without_time(workspace: Workspace) -> Iterator[Mismatch]:
+def _without_time(workspace: Workspace) -> Mismatches:
     """Yield that `use_sim_time`, which every node declares, is given no boolean."""
     for given in chain.from_iterable(workspace.parameters.owners.values()):
         value = given.values.get("use_sim_time")
@@ -647,7 +642,7 @@ def _other_type(
     *,
     is_certain: bool = True,
     reader: str = "its node",
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that a parameter is given a value of another type than the node declares."""
     actual = type_in_words(given.value)
     if not declared or not actual or declared == actual:
@@ -665,7 +660,6 @@ _FILTER_SIZE = Rule(
     "filter-size",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "An input of a robot_localization filter has 15 values.",
     why=(
         "robot_localization reads each value by its position and does not check their number. A"
@@ -699,7 +693,7 @@ Node(
 )
 
 
-def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
+def _filters(tree: YamlNode | YamlFault | None) -> Facts:
     """Yield which values of an input a filter of robot_localization takes, if not 15."""
     for _, section in sections_in(tree) if isinstance(tree, YamlNode) else ():
         for value in values_in(section):
@@ -716,7 +710,6 @@ _ROBOT_TEXT = Rule(
     "robot-text",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "robot_description is the text of a robot.",
     why=(
         "robot_state_publisher parses the path as XML and ends with 'Unable to initialize "
@@ -739,7 +732,7 @@ Node(
 )
 
 
-def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
+def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) -> Facts:
     """Yield that a program that needs the text of a robot gets a path in its place."""
     row = row_for(f"{node.package}/{node.executable}", _ROBOT)
     if row is None or not row.is_required or node.arguments != ():
@@ -760,7 +753,6 @@ _ROBOT_EXPANDED = Rule(
     "robot-expanded",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The text of a robot is what xacro makes of its file.",
     why=(
         "Parsers of URDF know no macros and no ${...}. robot_state_publisher stops, or it "
@@ -794,9 +786,7 @@ Node(
 )
 
 
-def _xacro_as_text(
-    workspace: Workspace, node: StartedNode, robot: ParameterValue
-) -> Iterator[Fact]:
+def _xacro_as_text(workspace: Workspace, node: StartedNode, robot: ParameterValue) -> Facts:
     """Yield that a program gets the text of a xacro file, whose tags only xacro expands."""
     assert isinstance(robot.value, FileText)
     contents = robot.value.contents
@@ -820,7 +810,6 @@ _ROBOT_LINKS = Rule(
     "robot-links",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The file of a robot that a launch file starts has links.",
     why=(
         "A robot without a link has no root, so the parser refuses it. robot_state_publisher "
@@ -869,7 +858,7 @@ def generate_launch_description():
 )
 
 
-def _only_macros(workspace: Workspace, node: StartedNode, robot: ParameterValue) -> Iterator[Fact]:
+def _only_macros(workspace: Workspace, node: StartedNode, robot: ParameterValue) -> Facts:
     """Yield that a program gets a robot from a file that defines macros and calls none."""
     assert isinstance(robot.value, FileText)
     path = workspace.installed.find_source(robot.value.contents.path)
@@ -891,7 +880,7 @@ def _only_macros(workspace: Workspace, node: StartedNode, robot: ParameterValue)
         yield Mismatch(_ROBOT_LINKS, message, robot.location, Location(path, 1, 1))
 
 
-def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
+def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode) -> Facts:
     """Yield that a program is given a robot's file as an argument that it does not read.
 
     No stated release of the program reads it.
@@ -912,7 +901,7 @@ def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode
         yield Mismatch(_ROBOT_TEXT, message, node.location)
 
 
-def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Iterator[Fact]:
+def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Facts:
     """Yield the entries of lists of plugins that have no section.
 
     There is none beside them, and none at the same place elsewhere.
@@ -1012,7 +1001,6 @@ _PLUGIN_NAME = Rule(
     "plugin-name",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The class of a plugin is one that exists.",
     why=(
         "pluginlib prints that the class does not exist, with the declared types. The node is "
@@ -1032,7 +1020,7 @@ obstacle_layer:
 )
 
 
-def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fact]:
+def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Facts:
     """Yield plugins that are written with other separators than pluginlib knows them by.
 
     pluginlib knows them so in every release that the file may be for.
@@ -1058,7 +1046,7 @@ def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fac
         yield Mismatch(_PLUGIN_NAME, message, at, corrections=corrections(text, at, meant))
 
 
-def _plugins_of_two_releases(values: Sequence[YamlValue]) -> Iterator[Mismatch]:
+def _plugins_of_two_releases(values: Sequence[YamlValue]) -> Mismatches:
     """Yield the plugin of the newest release in a file, beside one that this has no more."""
     named = []
     for value in values:

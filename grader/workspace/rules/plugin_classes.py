@@ -11,10 +11,16 @@ from grader.ros.package.package import MANIFEST, Package
 from grader.workspace.graph.started_controllers import defined_controllers
 from grader.workspace.model.text_files import MAX_YAML
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, corrections, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    Mismatches,
+    corrections,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -46,7 +52,7 @@ class _NamedClass(NamedTuple):
     user: str
 
 
-def plugin_class_facts(workspace: Workspace) -> Iterator[Fact]:
+def plugin_class_facts(workspace: Workspace) -> Facts:
     """Yield the classes of own packages that no file describes, and files that nothing exports."""
     described: list[_DescribedClass] = []
     for package in workspace.packages:
@@ -91,7 +97,6 @@ _PLUGIN_CLASS = Rule(
     "plugin-class",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A package of the workspace describes the controller or hardware that a file names.",
     why=(
         "pluginlib finds classes by the names in description files. For another name it reports"
@@ -115,7 +120,7 @@ pluginlib_export_plugin_description_file(controller_interface plugins.xml)
 )
 
 
-def _not_described(workspace: Workspace, described: Sequence[_DescribedClass]) -> Iterator[Fact]:
+def _not_described(workspace: Workspace, described: Sequence[_DescribedClass]) -> Facts:
     """Yield the names of classes that their own package does not describe.
 
     It is yielded only of a package that describes classes of the same kind, and makes no
@@ -163,7 +168,6 @@ _PLUGIN_EXPORTED = Rule(
     "plugin-exported",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "CMakeLists.txt exports the files that describe plugins.",
     why=(
         "pluginlib reads only description files that are registered in the ament index. It "
@@ -186,7 +190,7 @@ _PLUGIN_EXPORTED = Rule(
 )
 
 
-def _not_exported(package: Package, source: Source) -> Iterator[Mismatch]:
+def _not_exported(package: Package, source: Source) -> Mismatches:
     """Yield a file of classes that neither CMakeLists.txt nor package.xml exports."""
     setup = package.installation
     if setup is None or not package.is_cmake or setup.fault is not None:
@@ -207,7 +211,6 @@ _PLUGIN_LIBRARY = Rule(
     "plugin-library",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A target makes the library of a file that describes plugins.",
     why=(
         "pluginlib knows the class, but finds no library to load it from. It raises a "
@@ -236,7 +239,7 @@ pluginlib_export_plugin_description_file(controller_interface descriptions.xml)
 )
 
 
-def _other_libraries(package: Package, source: Source) -> Iterator[Mismatch]:
+def _other_libraries(package: Package, source: Source) -> Mismatches:
     """Yield the libraries of a file of classes that no target makes, where a similar one is."""
     setup = package.installation
     targets = setup.targets if setup is not None and setup.fault is None else ()

@@ -3,7 +3,7 @@
 The nodes are those that a lifecycle manager looks after.
 """
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -29,8 +29,9 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
     Definition,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     Open,
     Undecided,
     Use,
@@ -38,10 +39,8 @@ from grader.workspace.rules.names import (
     warning,
 )
 from grader.workspace.rules.rule_table import (
-    MAY_WAIT,
     NO_PROGRAM,
     NO_RUN,
-    SIMILAR,
     Rule,
 )
 
@@ -53,7 +52,6 @@ _PROGRAM_EXISTS = Rule(
     "program-exists",
     "programs",
     NO_PROGRAM,
-    SIMILAR,
     "The package of a started node has its program.",
     why=(
         "ros2 launch prints that the executable is not found on the libexec directory, and "
@@ -67,7 +65,7 @@ _PROGRAM_EXISTS = Rule(
 )
 
 
-def program_facts(workspace: Workspace) -> Iterator[Fact]:
+def program_facts(workspace: Workspace) -> Facts:
     """Yield the programs that launch files start and no package has, and unstarted nodes."""
     started = {(node.package, node.executable) for _, node in workspace.launches.nodes}
     for package in workspace.packages:
@@ -95,7 +93,7 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _lifecycle(workspace)
 
 
-def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Iterator[Fact]:
+def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Facts:
     """Yield that a package of the workspace does not have the program of a node.
 
     If it has the program, yield that Linux cannot execute it.
@@ -118,7 +116,6 @@ _ENTRY_POINT = Rule(
     "entry-point",
     "programs",
     NO_PROGRAM,
-    SIMILAR,
     "An entry point names a function that exists.",
     why=(
         "colcon build succeeds, because it does not import the module. The program then ends at"
@@ -133,7 +130,7 @@ _ENTRY_POINT = Rule(
 )
 
 
-def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
+def _entry_points(workspace: Workspace, package: Package) -> Facts:
     """Yield the entry points of a package that name no function."""
     for entry in entry_points(package):
         yield Compared("programs")
@@ -153,7 +150,6 @@ _MODULE_INSTALLED = Rule(
     "module-installed",
     "code",
     NO_RUN,
-    MAY_WAIT,
     "A build installs the modules of the package that a node imports.",
     why=(
         "The program works in the source folder. After colcon build it ends at its start with a"
@@ -168,7 +164,7 @@ _MODULE_INSTALLED = Rule(
 )
 
 
-def _modules_not_installed(workspace: Workspace, package: Package) -> Iterator[Mismatch]:
+def _modules_not_installed(workspace: Workspace, package: Package) -> Mismatches:
     """Yield the modules of the package that an entry point imports and no build installs."""
     for missing in modules_not_installed(package):
         message = (
@@ -192,7 +188,6 @@ _ENTRY_MODULE = Rule(
     "entry-module",
     "programs",
     NO_PROGRAM,
-    SIMILAR,
     "An entry point runs the module of its own name, if that has such a function.",
     why=(
         "ros2 run starts the node of another module without an error. The node with the name of"
@@ -212,7 +207,7 @@ entry_points={'console_scripts': ['pilot=rover.pilot:main', 'joystick=rover.joys
 )
 
 
-def _other_modules(package: Package) -> Iterator[Mismatch]:
+def _other_modules(package: Package) -> Mismatches:
     """Yield the entry points that run another module than the one of their own name.
 
     The one of their name has the function that they name, and no other entry point runs it.
@@ -237,9 +232,7 @@ def _other_modules(package: Package) -> Iterator[Mismatch]:
             yield warning(_ENTRY_MODULE, message, entry.location, place)
 
 
-def _unstarted_scripts(
-    package: Package, started: Collection[tuple[str, str]]
-) -> Iterator[Mismatch]:
+def _unstarted_scripts(package: Package, started: Collection[tuple[str, str]]) -> Mismatches:
     """Yield the scripts that CMake installs as programs, and that Linux cannot execute.
 
     A launch file that starts one is said to start it.
@@ -259,7 +252,6 @@ _PROGRAM_RUNS = Rule(
     "program-runs",
     "programs",
     NO_PROGRAM,
-    SIMILAR,
     "The first line of a script names an interpreter.",
     why=(
         "Linux does not execute the script: ros2 run and ros2 launch fail with 'Exec format "
@@ -285,7 +277,7 @@ rclpy.init()
 )
 
 
-def _not_executed(package: Package, name: str, at: Location | None) -> Iterator[Mismatch]:
+def _not_executed(package: Package, name: str, at: Location | None) -> Mismatches:
     """Yield that Linux cannot execute a script, which is started at a place.
 
     Its first line has to name the interpreter, and end without CR.
@@ -359,7 +351,7 @@ def _missing_program(
     return _MissingProgram(f"the package {package!r} has no program {name!r}; {there}", guess)
 
 
-def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
+def _lifecycle(workspace: Workspace) -> Facts:
     """Yield the nodes that lifecycle managers are told of, and all that are started."""
     managers = [
         pair for pair in workspace.launches.nodes if pair[1].executable == "lifecycle_manager"
@@ -377,7 +369,7 @@ def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
                 yield Use("node", str(name).rpartition("/")[2], names.location, "node_names")
 
 
-def _started(workspace: Workspace) -> Iterator[Fact]:
+def _started(workspace: Workspace) -> Facts:
     """Yield the nodes that launch files start, and that there may be more."""
     for _, _, launch in workspace.launches.files:
         if launch.more:

@@ -24,16 +24,15 @@ from grader.ros.package.package import MANIFEST, Package
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     corrections,
     cost_of_guess,
 )
 from grader.workspace.rules.rule_table import (
     NO_KEY,
     NO_PACKAGE,
-    NOWHERE,
-    UNKNOWN_KEY,
     Rule,
 )
 from grader.workspace.rules.used_packages import calls_in, named_in_robots
@@ -47,7 +46,7 @@ _MAX_FOUND = 40  # packages of a workspace, beyond which others may not be read
 _OF_TEMPLATES = frozenset({"my", "robot", "ros", "ros2", "bot"})
 
 
-def provision_facts(workspace: Workspace) -> Iterator[Fact]:
+def provision_facts(workspace: Workspace) -> Facts:
     """Yield the keys that rosdep does not know, and packages that nothing has."""
     for package in workspace.packages:
         manifest = package.manifest
@@ -56,7 +55,7 @@ def provision_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _absent_packages(workspace)
 
 
-def _unknown_keys(workspace: Workspace, package: Package) -> Iterator[Fact]:
+def _unknown_keys(workspace: Workspace, package: Package) -> Facts:
     """Yield the dependencies of a package that rosdep cannot install.
 
     It is a note where the name may be that of a package that is built from source.
@@ -83,7 +82,6 @@ _ROSDEP_KEY = Rule(
     "rosdep-key",
     "keys",
     NO_KEY,
-    UNKNOWN_KEY,
     "rosdep knows the dependencies in package.xml that the workspace does not have.",
     why=(
         "rosdep install stops with 'Cannot locate rosdep definition' and installs none of the "
@@ -176,7 +174,7 @@ class _NamedPackage(NamedTuple):
     is_compared: bool = True
 
 
-def _absent_packages(workspace: Workspace) -> Iterator[Fact]:
+def _absent_packages(workspace: Workspace) -> Facts:
     """Yield packages that files name, and that neither the workspace nor a release has.
 
     Each is yielded once. It is an error where a package of the workspace is called alike, and
@@ -241,7 +239,6 @@ _PACKAGE_EXISTS = Rule(
     "package-exists",
     "dependencies",
     NO_PACKAGE,
-    NOWHERE,
     "The packages that files name exist: in the workspace, or in a release of ROS 2.",
     why=(
         "Launch files and nodes stop with PackageNotFoundError when they ask for its share "
@@ -271,7 +268,7 @@ Node(package='rviz2', executable='rviz2',
 )
 
 
-def _absent(workspace: Workspace, named: _NamedPackage) -> Iterator[Mismatch]:
+def _absent(workspace: Workspace, named: _NamedPackage) -> Mismatches:
     """Yield that a package is not there, unless the rule of files says it."""
     name, at = named.name, named.location
     names = [package.name for package in workspace.packages]

@@ -13,7 +13,6 @@ from grader.workspace.graph.transform_edges import Edge, is_zero_rotation
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
-    OTHER_TRANSFORM,
     OTHER_VALUE,
     WRONG_TRANSFORM,
     Rule,
@@ -26,7 +25,6 @@ _TRANSFORM_ROTATION = Rule(
     "transform-rotation",
     "transforms",
     WRONG_TRANSFORM,
-    OTHER_TRANSFORM,
     "The quaternion of a static transform is a rotation.",
     why=(
         "tf2 ignores the static transform and prints TF_DENORMALIZED_QUATERNION. The frame is "
@@ -73,7 +71,6 @@ _TRANSFORM_OWNER = Rule(
     "transform-owner",
     "transforms",
     WRONG_TRANSFORM,
-    OTHER_TRANSFORM,
     "One program publishes the transform of a frame.",
     why=(
         "The frame jumps between two poses as each program publishes. The robot flickers in "
@@ -134,7 +131,6 @@ _STATIC_POSE = Rule(
     "static-pose",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "A static transform of a link equals its fixed joint.",
     why=(
         "Two programs publish different poses of one link. Which one counts depends on the "
@@ -177,7 +173,6 @@ _TRANSFORM_CYCLE = Rule(
     "transform-cycle",
     "transforms",
     WRONG_TRANSFORM,
-    OTHER_TRANSFORM,
     "The transforms of a robot have no cycle.",
     why=(
         "tf2 cannot resolve frames in a loop: lookups fail with 'The tf tree is invalid because"

@@ -19,7 +19,12 @@ from grader.workspace.graph.started_controllers import (
 )
 from grader.workspace.model.launches import MANAGER
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     OTHER_VALUE,
     Rule,
@@ -38,7 +43,7 @@ class _StatedNumber(NamedTuple):
     location: Location
 
 
-def rate_facts(workspace: Workspace) -> Iterator[Fact]:
+def rate_facts(workspace: Workspace) -> Facts:
     """Yield the rates and ranges that cannot be reached."""
     yield from _rates_of_controllers(workspace)
     if workspace.robots.may_be_others:
@@ -62,7 +67,6 @@ _OBSTACLE_RANGE = Rule(
     "obstacle-range",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "A costmap asks for no obstacles beyond the range of its lidar.",
     why=(
         "The lidar does not measure that far. The costmap marks obstacles later than the value "
@@ -85,7 +89,7 @@ obstacle_layer:
 )
 
 
-def _too_far(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mismatch]:
+def _too_far(asked: _StatedNumber | None, lidar: _StatedNumber) -> Mismatches:
     """Yield that a costmap marks obstacles farther away than any lidar measures."""
     if asked is not None and asked.value > lidar.value + _ROUNDING:
         message = (
@@ -98,7 +102,6 @@ def _too_far(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mism
 _SCAN_RATE = Rule(
     "scan-rate",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "A costmap expects scans no more often than its lidar measures.",
     why=(
@@ -122,7 +125,7 @@ obstacle_layer:
 )
 
 
-def _too_often(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mismatch]:
+def _too_often(asked: _StatedNumber | None, lidar: _StatedNumber) -> Mismatches:
     """Yield that a costmap expects scans more often than any lidar measures."""
     period = 1.0 / lidar.value
     if asked is not None and asked.value < period - _ROUNDING:
@@ -136,7 +139,6 @@ def _too_often(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mi
 _PUBLISH_RATE = Rule(
     "publish-rate",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "A controller publishes no more often than it is updated.",
     why=(
@@ -163,7 +165,7 @@ drive_controller:
 )
 
 
-def _rates_of_controllers(workspace: Workspace) -> Iterator[Fact]:
+def _rates_of_controllers(workspace: Workspace) -> Facts:
     """Yield the controllers that should publish more often than their manager updates them."""
     sections = parameters_of_controllers(workspace)
     update = _number_in(sections.get(MANAGER), MANAGER, "update_rate")

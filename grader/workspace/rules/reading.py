@@ -15,6 +15,7 @@ from grader.workspace.rules.names import (
     Agreement,
     Definition,
     Fact,
+    Facts,
     Mismatch,
     Use,
     agreement,
@@ -33,7 +34,7 @@ class _Facts(NamedTuple):
 
 
 @cache
-def _readers() -> "tuple[Callable[[Workspace], Iterator[Fact]], ...]":
+def _readers() -> "tuple[Callable[[Workspace], Facts], ...]":
     """Return the functions `..._facts` of the modules beside this one."""
     readers = []
     for place in list_readers():
@@ -89,7 +90,7 @@ def wrong_names(
     return wrong
 
 
-def read_facts(workspace: Workspace) -> Iterator[Fact]:
+def read_facts(workspace: Workspace) -> Facts:
     """Yield what the files of a workspace define and use.
 
     Raises NotDecided where this takes too much work.

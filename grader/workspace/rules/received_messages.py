@@ -5,7 +5,7 @@ cannot be converted.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from grader.base.text import quoted
 from grader.ros.interfaces.known_interfaces import known_interfaces
@@ -14,7 +14,13 @@ from grader.ros.nodes.node_facts import EndpointKind, ImageEncoding
 from grader.workspace.graph.code_ends import End
 from grader.workspace.graph.graph import grouped, make_graph
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_MESSAGE,
     Rule,
@@ -32,7 +38,7 @@ _EFFECTS = {
 _ENDS = ("publisher", "subscription")
 
 
-def received_message_facts(workspace: Workspace) -> Iterator[Fact]:
+def received_message_facts(workspace: Workspace) -> Facts:
     """Yield messages that their reader cannot use."""
     for package in workspace.packages:
         yield from _without_header(workspace, package.name)
@@ -43,7 +49,6 @@ def received_message_facts(workspace: Workspace) -> Iterator[Fact]:
 _MESSAGE_HEADER = Rule(
     "message-header",
     "messages",
-    NO_MESSAGE,
     NO_MESSAGE,
     "The messages of a filter or synchroniser have a header.",
     why=(
@@ -62,7 +67,7 @@ self.pairs = ApproximateTimeSynchronizer(filters, 10, 0.1)
 )
 
 
-def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
+def _without_header(workspace: Workspace, package: str) -> Mismatches:
     """Yield the messages that a synchroniser drops, or stops at, since they have no header."""
     for each in workspace.code.by_package[package].synchronised:
         if _has_header(workspace, each.type) is not False:
@@ -96,7 +101,6 @@ _MESSAGE_DEPTH = Rule(
     "message-depth",
     "messages",
     NO_MESSAGE,
-    NO_MESSAGE,
     "A publisher or subscription keeps messages.",
     why=(
         "ROS 2 replaces a depth of 0 with the default of the middleware, mostly 1. Of several "
@@ -108,7 +112,7 @@ _MESSAGE_DEPTH = Rule(
 )
 
 
-def _without_queue(workspace: Workspace, package: str) -> Iterator[Mismatch]:
+def _without_queue(workspace: Workspace, package: str) -> Mismatches:
     """Yield publishers and subscriptions whose queue has no length."""
     for node in workspace.code.by_package[package].nodes:
         for endpoint in node.endpoints:
@@ -120,7 +124,7 @@ def _without_queue(workspace: Workspace, package: str) -> Iterator[Mismatch]:
                 yield warning(_MESSAGE_DEPTH, message, endpoint.location)
 
 
-def _other_encodings(workspace: Workspace) -> Iterator[Fact]:
+def _other_encodings(workspace: Workspace) -> Facts:
     """Yield the callbacks that convert images to an encoding to which they cannot be converted."""
     sent = _by_launch_and_topic(workspace, "publisher")
     for key, subscriptions in _by_launch_and_topic(workspace, "subscription").items():
@@ -144,7 +148,7 @@ def _by_launch_and_topic(
 
 def _not_converted(
     topic: str, made: Sequence[ImageEncoding], asked: Sequence[ImageEncoding]
-) -> Iterator[Fact]:
+) -> Facts:
     """Yield the conversions of a callback that fail, unless it has one that may succeed."""
     are_lost = all(_is_lost(each.name, encoding.name) for each in made for encoding in asked)
     for encoding in asked:
@@ -156,7 +160,6 @@ def _not_converted(
 _IMAGE_ENCODING = Rule(
     "image-encoding",
     "messages",
-    NO_MESSAGE,
     NO_MESSAGE,
     "cv_bridge converts the images of a topic to the asked encoding.",
     why=(

@@ -33,7 +33,6 @@ _NAMES_COMPARED = Rule(
     "names-compared",
     "files",
     UNCOMPARED,
-    UNCOMPARED,
     "All names of a workspace are compared.",
     why=(
         "Mistakes in the remaining names appear only when the workspace runs. A rubric leaves "
@@ -65,7 +64,6 @@ def compared_names(workspace: Workspace) -> Iterator[Problem]:
 _NAME_RELEASE = Rule(
     "name-release",
     "words",
-    OTHER_RELEASE,
     OTHER_RELEASE,
     "Packages, programs, controllers, plugins and topics are of the stated release.",
     why=(
@@ -137,7 +135,7 @@ def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
     for controller in defined_controllers(workspace):
         types[controller.name] = controller.type.text or ""
         if not workspace.texts.has_plugin(types[controller.name]):
-            yield "controller", types[controller.name], controller.location, ""
+            yield "controller", types[controller.name], controller.type.location, ""
     for _, tree in workspace.installed.trees:
         for value in values_in(tree):
             if value.keys and value.keys[-1] in _PLUGIN_KEYS:

@@ -16,7 +16,6 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, corrections
 from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
-    SIMILAR,
     Rule,
 )
 
@@ -93,7 +92,6 @@ _NODE_SECTION = Rule(
     "node-section",
     "parameters",
     NO_PARAMETER,
-    SIMILAR,
     "The section of a node has the name that its launch file gives it.",
     why=(
         "The name in the launch file replaces the name in the code. The node ignores the "

@@ -1,13 +1,14 @@
 """Command interfaces of joints that several <ros2_control> of a robot have."""
 
-from collections.abc import Iterator
-
 from grader.ros.xml.parsing import Element
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -15,7 +16,6 @@ _INTERFACE_ONCE = Rule(
     "interface-once",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A robot has each command interface in one <ros2_control> only.",
     why=(
         "Newer releases of ros2_control refuse the whole robot. Older ones use only the first "
@@ -45,7 +45,7 @@ _INTERFACE_ONCE = Rule(
 )
 
 
-def repeated_interface_facts(workspace: Workspace) -> Iterator[Fact]:
+def repeated_interface_facts(workspace: Workspace) -> Facts:
     """Yield the joints whose commands two systems of a robot take.
 
     Newer controller managers load no such robot, older ones use the first of them.

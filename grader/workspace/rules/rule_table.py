@@ -70,7 +70,7 @@ MAY_WAIT = _warning("REF016", "Node that may stop or wait")
 WRONG_VALUE = _error("REF017", "Number that contradicts the robot")
 OTHER_VALUE = _warning("REF018", "Number that is not that of the robot")
 WRONG_TRANSFORM = _error("REF019", "Frames that are no tree")
-OTHER_TRANSFORM = _warning("REF020", "Transform that two programs publish")
+_OTHER_TRANSFORM = _warning("REF020", "Transform that two programs publish")
 NO_COMPANION = _warning("REF021", "Node that does not fit the others")
 ONE_MACHINE = _warning("REF022", "What only one machine has")
 OTHER_MOVEIT = _warning("REF023", "Description for MoveIt that does not fit the robot")
@@ -82,9 +82,9 @@ NO_EFFECT = _warning("REF028", "Parameter that has no effect")
 UNCONNECTED = _warning("REF029", "Transform between frames that nothing connects")
 BUILT_LATER = _error("REF030", "Package that a build does not find")
 NO_PACKAGE = _error("REF031", "Package that does not exist")
-NOWHERE = _warning("REF032", "Package that neither the workspace nor a release has")
+_NOWHERE = _warning("REF032", "Package that neither the workspace nor a release has")
 NO_KEY = _warning("REF033", "Name that rosdep does not know")
-UNKNOWN_KEY = Kind("REF034", "Name that may be no key of rosdep", severity="note", effect="other")
+_UNKNOWN_KEY = Kind("REF034", "Name that may be no key of rosdep", severity="note", effect="other")
 NOT_COMPILED = _error("REF035", "C++ file that does not compile")
 BROUGHT = Kind("REF036", "Library that other packages install", severity="note", effect="other")
 NOT_BUILT = Kind("REF037", "Package that colcon does not find", severity="note", effect="other")
@@ -96,6 +96,19 @@ NO_BUILD = _warning("REF040", "Package that colcon does not build")
 UNREAD = Kind("REF041", "Parameter or argument that nothing reads", severity="note", effect="other")
 LENT = _warning("REF042", "Package that package.xml declares only indirectly")
 NAME_CATALOGUE = kinds_in(globals().values())
+_OF_NAMES = (
+    *(NO_FILE, NO_FRAME, NO_CONTROLLER, NO_PARAMETER, NO_ARGUMENT),
+    *(NO_PROGRAM, NO_TOPIC, NO_SERVICE, NO_INTERFACE),
+)
+# The kinds of what is not certain, where they are others.
+_DOUBTFUL: Mapping[Kind, Kind] = {
+    **dict.fromkeys(_OF_NAMES, SIMILAR),
+    NO_RUN: MAY_WAIT,
+    WRONG_VALUE: OTHER_VALUE,
+    WRONG_TRANSFORM: _OTHER_TRANSFORM,
+    NO_KEY: _UNKNOWN_KEY,
+    NO_PACKAGE: _NOWHERE,
+}
 
 
 class Symptom(NamedTuple):
@@ -123,7 +136,6 @@ class Rule(NamedTuple):
     name: str  # which never changes; no check and no criterion has it
     family: AnyFamily  # of names_agree
     kind: Kind
-    doubtful: Kind
     sentence: str  # what is right
     is_of_type: bool = False  # whether a value or a topic has another type
     why: str = ""  # what happens where it is broken
@@ -133,6 +145,12 @@ class Rule(NamedTuple):
     frame: str = "rover.launch.py"  # a row of docs/examples/frames.toml, or a file of its own
     beside: Mapping[str, str] = {}  # other files of the example, by their frames
     at: str = ""  # the path of the file with the finding, where it is another one
+    doubtful_kind: Kind | None = None  # if it is not that which belongs to the kind
+
+    @property
+    def doubtful(self) -> Kind:
+        """The kind of a finding that is not certain."""
+        return self.doubtful_kind or _DOUBTFUL.get(self.kind, self.kind)
 
     def __hash__(self) -> int:
         """Return one number for each name: the files of an example have no hash."""
@@ -184,7 +202,8 @@ class _Rules(Mapping[str, Rule]):
         """Return a rule as its entry has it."""
         row = dict(_table()["rules"][name])
         kinds = {kind.code: kind for kind in NAME_CATALOGUE}
-        row["kind"], row["doubtful"] = kinds[row["kind"]], kinds[row["doubtful"]]
+        for key in {"kind", "doubtful_kind"} & row.keys():
+            row[key] = kinds[row[key]]
         symptoms = [Symptom(**each) for each in row.get("symptoms", ())]
         row["symptoms"] = tuple(each._replace(within=tuple(each.within)) for each in symptoms)
         return Rule(name, **row)

@@ -8,7 +8,12 @@ from grader.base.text import enumerated, quoted
 from grader.ros.urdf.kinematics import Configuration
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Facts,
+    Mismatch,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     OTHER_VALUE,
     Rule,
@@ -20,7 +25,7 @@ _LEAST = 0.01  # metres between left and right
 _OF_PAIR = 20  # parts
 
 
-def side_facts(workspace: Workspace) -> Iterator[Fact]:
+def side_facts(workspace: Workspace) -> Facts:
     """Yield the wheels of robots that are called left and are on the right.
 
     The x axis of the root points forward (REP 103). Where some pairs are on their sides, names may
@@ -67,7 +72,6 @@ _LINK_SIDE = Rule(
     "link-side",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "Links that are called left are on the left of those called right.",
     why=(
         "Controllers and code choose links by their names. A robot with such wheels turns the "
@@ -95,7 +99,7 @@ _LINK_SIDE = Rule(
 )
 
 
-def _exchanged(robot: KnownRobot, pairs: list[tuple[str, str]]) -> Iterator[Mismatch]:
+def _exchanged(robot: KnownRobot, pairs: list[tuple[str, str]]) -> Mismatches:
     """Yield that all pairs are on the other sides."""
     configuration = Configuration(robot.robot)
     wrong = []

@@ -1,9 +1,7 @@
 """Positions of the joints of a robot in Gazebo: whether something publishes them."""
 
-from collections.abc import Iterator
-
 from grader.base.text import quoted
-from grader.ros.launch.launch_model import STATE_PUBLISHER, Launch, StartedNode
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.urdf.model import Joint
 from grader.workspace.graph.bridge_rows import BRIDGE, are_rows_known
 from grader.workspace.graph.graph import make_graph
@@ -12,7 +10,11 @@ from grader.workspace.graph.unread_ends import may_publish_type
 from grader.workspace.model.launches import SPAWNERS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.companions import may_publish_joint_states
-from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
     Rule,
@@ -25,7 +27,6 @@ _SIMULATION = "ros_gz_sim"
 _SIMULATED_JOINTS = Rule(
     "simulated-joints",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "Something publishes the positions of the joints of a robot in Gazebo.",
     why=(
@@ -68,7 +69,7 @@ def generate_launch_description():
 )
 
 
-def simulated_joint_facts(workspace: Workspace) -> Iterator[Fact]:
+def simulated_joint_facts(workspace: Workspace) -> Facts:
     """Yield launch files that create a robot with wheels in Gazebo without their positions.
 
     They are yielded only if all that the launch file starts is known, and each robot has such
@@ -84,7 +85,7 @@ def simulated_joint_facts(workspace: Workspace) -> Iterator[Fact]:
     if workspace.robots.may_be_others or is_said:
         return
     for number, (_, launch) in enumerate(workspace.launches.roots if moving else ()):
-        publishers = [node for node in launch.nodes if node.executable == STATE_PUBLISHER]
+        publishers = [node for node in launch.nodes if node.is_state_publisher]
         if not _creates_robot(launch) or not publishers or launch.unknown or launch.commands:
             continue
         yield Compared("wiring")
@@ -125,6 +126,6 @@ def _may_publish(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether it is not known that a node publishes no positions of joints."""
     if node.package == BRIDGE:
         return not are_rows_known(workspace, node)
-    if node.package == _SIMULATION or node.executable == STATE_PUBLISHER:
+    if node.package == _SIMULATION or node.is_state_publisher:
         return False
     return may_publish_type(workspace, node, _STATES)

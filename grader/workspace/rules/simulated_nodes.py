@@ -1,6 +1,6 @@
 """Nodes that a launch file starts beside Gazebo: whether they use the time of the simulation."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 
 from grader.base.source import Location
 from grader.base.text import enumerated
@@ -10,7 +10,11 @@ from grader.workspace.graph.bridge_rows import BRIDGE
 from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.own_code import CPP_ENDINGS
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     OTHER_TIME,
     Rule,
@@ -31,7 +35,6 @@ _SIMULATED_NODE = Rule(
     "simulated-node",
     "wiring",
     OTHER_TIME,
-    OTHER_TIME,
     "The nodes that a launch file starts beside Gazebo use its time.",
     why=(
         "What the node publishes has the time of the machine. RViz, tf2 and filters beside "
@@ -50,7 +53,7 @@ Node(package='robot_state_publisher', executable='robot_state_publisher',
 )
 
 
-def simulated_node_facts(workspace: Workspace) -> Iterator[Fact]:
+def simulated_node_facts(workspace: Workspace) -> Facts:
     """Yield well-known nodes that are started beside Gazebo and use the time of the machine.
 
     Own nodes count where another node of the launch file uses the time of the simulation. Nodes

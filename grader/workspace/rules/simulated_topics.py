@@ -15,10 +15,14 @@ from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.bridges import has_unread_topics
 from grader.workspace.rules.frames import openings
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_TOPIC,
-    SIMILAR,
     Rule,
 )
 
@@ -35,7 +39,7 @@ class _Need(NamedTuple):
     what: str
 
 
-def simulated_topic_facts(workspace: Workspace) -> Iterator[Fact]:
+def simulated_topic_facts(workspace: Workspace) -> Facts:
     """Yield rows without a system, and odometry without a row."""
     rows = [row for row in bridge_rows(workspace) if row.is_used]
     creates = any(node.executable == "create" for _, node in workspace.launches.nodes)
@@ -70,7 +74,6 @@ _BRIDGE_SYSTEM = Rule(
     "bridge-system",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "The robot has a system for the commands, joints and odometry of a bridge.",
     why=(
         "Nothing in Gazebo reads the commands or publishes the messages. The topics exist in "
@@ -98,9 +101,7 @@ Node(package='ros_gz_bridge', executable='parameter_bridge',
 )
 
 
-def _without_system(
-    rows: Collection[BridgeRow], systems: Mapping[str, Location]
-) -> Iterator[Mismatch]:
+def _without_system(rows: Collection[BridgeRow], systems: Mapping[str, Location]) -> Mismatches:
     """Yield the rows whose messages no system takes or sends."""
     for row in rows:
         need = _needs().get(row.gz_type)
@@ -120,7 +121,6 @@ _ODOMETRY_BRIDGED = Rule(
     "odometry-bridged",
     "topics",
     NO_TOPIC,
-    SIMILAR,
     "A bridge takes the transform of odometry that RViz shows to /tf.",
     why=(
         "RViz reports that its fixed frame does not exist and cannot place the robot, although "
@@ -145,7 +145,7 @@ Node(package='ros_gz_bridge', executable='parameter_bridge',
 )
 
 
-def _odometry(workspace: Workspace, rows: Collection[BridgeRow]) -> Iterator[Mismatch]:
+def _odometry(workspace: Workspace, rows: Collection[BridgeRow]) -> Mismatches:
     """Yield the fixed frame of RViz that Gazebo publishes, and that no row takes to tf2."""
     if any(row.ros_type == _TRANSFORMS for row in rows) or _has_more_bridges(workspace):
         return

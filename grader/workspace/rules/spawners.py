@@ -20,15 +20,15 @@ from grader.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Definition,
-    Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     Open,
     Use,
     corrections,
 )
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
-    SIMILAR,
     Rule,
 )
 
@@ -38,7 +38,7 @@ _OF_GAZEBO = ("gz_ros2_control/", "ign_ros2_control/", "gazebo_ros2_control/")  
 _MAX_CONTROLLERS = 3  # in a message
 
 
-def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
+def spawner_facts(workspace: Workspace) -> Facts:
     """Yield the controllers that spawners load, and what keeps controllers from being loaded."""
     misspelt = list(_misspelt_managers(workspace))
     if misspelt:
@@ -65,7 +65,6 @@ _SPAWNER_MANAGER = Rule(
     "spawner-manager",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "The controller manager that a spawner asks is started.",
     why=(
         "The spawner waits for services of the controller manager that nothing offers. It waits"
@@ -95,7 +94,7 @@ Node(
 )
 
 
-def _without_plugin(workspace: Workspace) -> Iterator[Mismatch]:
+def _without_plugin(workspace: Workspace) -> Mismatches:
     """Yield that a spawner waits for the controller manager of a simulation that starts none.
 
     <ros2_control> names the hardware of Gazebo, which its plugin in <gazebo> loads.
@@ -122,7 +121,7 @@ def _without_plugin(workspace: Workspace) -> Iterator[Mismatch]:
             )
 
 
-def _names_in_spawners(workspace: Workspace) -> Iterator[Fact]:
+def _names_in_spawners(workspace: Workspace) -> Facts:
     """Yield the controllers that spawners name, and managers that they surely misspell.
 
     Where the launch file of a spawner starts no controller manager, that of a robot's driver may
@@ -180,7 +179,7 @@ def _is_typed(words: Sequence[str | None]) -> bool:
     return any(word and word.startswith(("-t", "--controller-t")) for word in words)
 
 
-def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact]:
+def _managers_named(workspace: Workspace, spawner: StartedNode) -> Facts:
     """Yield the controller manager that a spawner waits for, if it means another one.
 
     It surely stands for another one.
@@ -213,7 +212,6 @@ _MANAGER_PARAMETERS = Rule(
     "manager-parameters",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "The controller manager gets the types of the controllers that spawners start.",
     why=(
         "For each spawner the controller manager prints that the 'type' param was not defined, "
@@ -237,7 +235,7 @@ Node(package='controller_manager', executable='spawner', arguments=['arm_control
 
 def _without_type(
     workspace: Workspace, package: Package, launch: Launch, controllers: Sequence[Controller]
-) -> Iterator[Fact]:
+) -> Facts:
     """Yield the controllers whose types are in files or sections that nothing reads.
 
     The controller manager reads its own section of its files, and a spawner that of its controller.
@@ -306,7 +304,6 @@ _MANAGER_SECTION = Rule(
     "manager-section",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "The types of controllers are below controller_manager.",
     why=(
         "The controller manager ignores a section with another name without a message. Later "
@@ -336,7 +333,7 @@ arm_controller:
 )
 
 
-def _misspelt_managers(workspace: Workspace) -> Iterator[Mismatch]:
+def _misspelt_managers(workspace: Workspace) -> Mismatches:
     """Yield the sections of types of controllers that are called nearly as the manager.
 
     They are yielded where none is called as the controller manager.
@@ -366,7 +363,7 @@ def _has_types(section: YamlNode) -> bool:
     return any("/" in (kind.text or "") for kind in types)
 
 
-def _no_controllers(workspace: Workspace) -> Iterator[Mismatch]:
+def _no_controllers(workspace: Workspace) -> Mismatches:
     """Yield the controllers that spawners start while no file has any, as an empty one."""
     if any(isinstance(tree, YamlFault) for tree in workspace.installed.yaml.values()):
         return
@@ -388,7 +385,6 @@ _CONTROLLER_STARTED = Rule(
     "controller-started",
     "controllers",
     NO_CONTROLLER,
-    SIMILAR,
     "A spawner starts one of the controllers that move joints, and one that publishes.",
     why=(
         "A controller without a spawner is not loaded. Its joints do not move, or without joint"
@@ -420,7 +416,7 @@ arm_controller:
 )
 
 
-def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Iterator[Fact]:
+def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Facts:
     """Yield the controllers that publish, or that move joints, where none is spawned."""
     spawned = started_controllers(workspace)
     if spawned is None:

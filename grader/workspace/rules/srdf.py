@@ -10,7 +10,16 @@ from grader.ros.xml.parsing import Element, XmlFile
 from grader.workspace.graph.compared_robots import ComparedRobots
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Definition, Fact, Mismatch, Open, Use, among, warning
+from grader.workspace.rules.names import (
+    Definition,
+    Facts,
+    Mismatch,
+    Mismatches,
+    Open,
+    Use,
+    among,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     NO_FRAME,
     OTHER_MOVEIT,
@@ -29,7 +38,7 @@ _ROUNDING = 1e-6
 _COMPUTED = (".srdf.xacro", ".srdf.xml.xacro")
 
 
-def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
+def srdf_facts(workspace: Workspace) -> Facts:
     """Yield what SRDF files define and name, if a robot is known."""
     files = workspace.texts.srdf_files
     if not workspace.robots.known:
@@ -113,7 +122,6 @@ _SRDF_ROBOT = Rule(
     "srdf-robot",
     "moveit",
     OTHER_MOVEIT,
-    OTHER_MOVEIT,
     "An SRDF names its robot.",
     why=(
         "MoveIt prints 'Semantic description is not specified for the same robot as the URDF' "
@@ -125,7 +133,7 @@ _SRDF_ROBOT = Rule(
 )
 
 
-def _other_robot(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
+def _other_robot(robot: Robot, file: XmlFile) -> Mismatches:
     """Yield that the description has another name than the only robot.
 
     MoveIt writes an error and goes on.
@@ -143,7 +151,6 @@ _SRDF_GROUP = Rule(
     "srdf-group",
     "moveit",
     OTHER_MOVEIT,
-    OTHER_MOVEIT,
     "A group of an SRDF is not empty.",
     why=(
         "MoveIt leaves out the group. A program that plans for it ends because the group was "
@@ -155,7 +162,7 @@ _SRDF_GROUP = Rule(
 )
 
 
-def _empty_groups(file: XmlFile) -> Iterator[Mismatch]:
+def _empty_groups(file: XmlFile) -> Mismatches:
     """Yield groups in which nothing is, which MoveIt leaves out."""
     for group in file.root.iterchildren("group"):
         if next(group.iterchildren("*"), None) is None:
@@ -170,7 +177,6 @@ _STATE_LIMITS = Rule(
     "state-limits",
     "frames",
     NO_FRAME,
-    SIMILAR,
     "The states of an SRDF are within the limits of the joints.",
     why=(
         "MoveIt does not move a joint beyond its limits. A motion to the named state fails or "
@@ -189,7 +195,7 @@ _STATE_LIMITS = Rule(
 )
 
 
-def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
+def _states(robot: Robot, file: XmlFile) -> Mismatches:
     """Yield positions in states of groups that are beyond the limits of their joints."""
     limits = {
         joint.name: joint.limit for joint in robot.joints if joint.type in ("revolute", "prismatic")
@@ -214,7 +220,6 @@ def _is_beyond(value: float, limit: Limit) -> bool:
 _DISABLED_PAIRS = Rule(
     "disabled-pairs",
     "frames",
-    SIMILAR,
     SIMILAR,
     "An SRDF disables the collisions between links that a joint connects.",
     why=(
@@ -248,7 +253,7 @@ _DISABLED_PAIRS = Rule(
 )
 
 
-def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
+def _neighbours(robot: Robot, file: XmlFile) -> Mismatches:
     """Yield links that a joint connects and whose collisions are compared.
 
     They are yielded where most such pairs are disabled. It is wrong only if their shapes touch in

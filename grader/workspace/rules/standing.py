@@ -15,7 +15,6 @@ _ROBOT_STANDS = Rule(
     "robot-stands",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "A robot stands level on its wheels, and they drive it straight ahead.",
     why=(
         "In Gazebo the robot tilts until it rests on other parts, or drives a curve. Its "

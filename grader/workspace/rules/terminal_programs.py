@@ -4,7 +4,6 @@ The standard input of what `ros2 launch` starts is a pipe that nothing writes to
 """
 
 import re
-from collections.abc import Iterator
 
 from grader.base.source import Location
 from grader.ros.known.package_rows import program_row
@@ -12,7 +11,11 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.workspace.model.code_text import code_alone
 from grader.workspace.model.own_code import CPP_ENDINGS
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     MAY_WAIT,
     Rule,
@@ -37,7 +40,6 @@ _PROGRAM_TERMINAL = Rule(
     "program-terminal",
     "wiring",
     MAY_WAIT,
-    MAY_WAIT,
     "A program that reads keys or lines is started in a terminal.",
     why=(
         "ros2 launch does not pass keys to a program. It waits without end, or it stops with "
@@ -50,7 +52,7 @@ Node(package='teleop_twist_keyboard', executable='teleop_twist_keyboard', prefix
 )
 
 
-def terminal_facts(workspace: Workspace) -> Iterator[Fact]:
+def terminal_facts(workspace: Workspace) -> Facts:
     """Yield the programs that read keys or lines, and that are started without a terminal.
 
     Of own programs the file of their only node is read. Nothing is said of one that is started by

@@ -39,7 +39,6 @@ _ONE_COMMANDER = Rule(
     "one-commander",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "One node commands the robot.",
     why=(
         "The robot obeys each message in turn: it jerks between two speeds, and the next "
@@ -80,7 +79,6 @@ def _two_commanders(publishers: Sequence[End], subscriptions: Sequence[End]) -> 
 _IMAGE_TRANSPORT = Rule(
     "image-transport",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "Images are read from the topic that carries them.",
     why=(
@@ -126,7 +124,6 @@ def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Misma
 _DISPLAY_QUALITY = Rule(
     "display-quality",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "A display of RViz asks for no more than is offered.",
     why=(
@@ -174,7 +171,6 @@ def _other_reliability(
 _COMMAND_TYPE = Rule(
     "command-type",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "A well-known program sends a controller the type that it reads.",
     why=(

@@ -48,7 +48,6 @@ _UNSTARTED_TYPE = Rule(
     "unstarted-type",
     "wiring",
     NO_COMPANION,
-    NO_COMPANION,
     "Two programs of a package that share a topic have one type for it.",
     why=(
         "The middleware matches only ends with equal types. Once both programs run, the "
@@ -154,7 +153,6 @@ def _of_one_launch(graph: Graph) -> Iterator[Mismatch]:
 _TOPIC_PARTNER = Rule(
     "topic-partner",
     "wiring",
-    NO_COMPANION,
     NO_COMPANION,
     "A topic that a node waits for is one that another node of its launch publishes.",
     why=(

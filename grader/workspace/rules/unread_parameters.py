@@ -2,12 +2,16 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from grader.base.source import Location
 from grader.ros.nodes.node_facts import PackageNodes
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     UNREAD,
     Rule,
@@ -25,7 +29,6 @@ _READS_OTHERS = re.compile(
 _PARAMETER_READ = Rule(
     "parameter-read",
     "words",
-    UNREAD,
     UNREAD,
     "Code reads the parameters that it declares.",
     why=(
@@ -47,7 +50,7 @@ def __init__(self):
 )
 
 
-def unread_parameter_facts(workspace: Workspace) -> Iterator[Fact]:
+def unread_parameter_facts(workspace: Workspace) -> Facts:
     """Yield the parameters whose names nothing but their declaration has.
 
     Nothing is said in a package whose code may read all parameters.

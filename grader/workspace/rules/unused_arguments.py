@@ -2,13 +2,18 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 from grader.base.source import Source
 from grader.base.text import enumerated, quoted
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.arguments import includes_others
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     UNREAD,
     Rule,
@@ -29,7 +34,7 @@ _XACRO_DECLARED = re.compile(r"<xacro:arg\s++name\s*+=\s*+[\"']([\w-]++)[\"']")
 _XACRO_USED = re.compile(r"\$\(arg\s++([\w-]++)|\barg\(\s*+[\"'](\w++)")
 
 
-def unused_argument_facts(workspace: Workspace) -> Iterator[Fact]:
+def unused_argument_facts(workspace: Workspace) -> Facts:
     """Yield the arguments that are declared, and that nothing in the files uses.
 
     A launch file that includes another one shares its arguments with it.
@@ -41,7 +46,6 @@ def unused_argument_facts(workspace: Workspace) -> Iterator[Fact]:
 _LAUNCH_ARGUMENT_USED = Rule(
     "launch-argument-used",
     "words",
-    UNREAD,
     UNREAD,
     "A launch file uses the arguments that it declares.",
     why=(
@@ -78,7 +82,7 @@ def generate_launch_description():
 )
 
 
-def _of_launch_files(workspace: Workspace) -> Iterator[Fact]:
+def _of_launch_files(workspace: Workspace) -> Facts:
     """Yield the arguments of launch files in Python whose names nothing else in the file has."""
     for package in workspace.packages:
         for source in workspace.texts.launch_sources(package):
@@ -119,7 +123,6 @@ _XACRO_ARGUMENT_USED = Rule(
     "xacro-argument-used",
     "words",
     UNREAD,
-    UNREAD,
     "The files of xacro use the arguments that they declare.",
     why=(
         "xacro accepts any value and prints the same robot. A change of the value has no effect"
@@ -146,7 +149,7 @@ _XACRO_ARGUMENT_USED = Rule(
 )
 
 
-def _of_xacro(workspace: Workspace) -> Iterator[Mismatch]:
+def _of_xacro(workspace: Workspace) -> Mismatches:
     """Yield the arguments of xacro that no file of xacro in the workspace uses.
 
     A file of another package that one includes may use any.

@@ -8,7 +8,12 @@ from grader.base.source import Location
 from grader.ros.known.rosdep_words import rosdep_words
 from grader.ros.package.package import Package
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    Mismatches,
+)
 from grader.workspace.rules.rule_table import (
     BROUGHT,
     NO_DEPENDENCY,
@@ -30,7 +35,7 @@ class _LibraryUse(NamedTuple):
     is_built: bool
 
 
-def library_facts(workspace: Workspace) -> Iterator[Fact]:
+def library_facts(workspace: Workspace) -> Facts:
     """Yield the libraries that a package uses, and that its package.xml does not declare.
 
     These are the modules that installed Python files import without a condition, and what
@@ -91,7 +96,6 @@ _LIBRARY_DECLARED = Rule(
     "library-declared",
     "keys",
     NO_DEPENDENCY,
-    BROUGHT,
     "package.xml declares the libraries of Python and C++ that the files of the package use.",
     why=(
         "rosdep does not install the library. On another machine the import raises "
@@ -110,12 +114,11 @@ def main():
 """,
     },
     at="rover/driver.py",
+    doubtful_kind=BROUGHT,
 )
 
 
-def _undeclared(
-    package: Package, use: _LibraryUse, declared: Collection[str]
-) -> Iterator[Mismatch]:
+def _undeclared(package: Package, use: _LibraryUse, declared: Collection[str]) -> Mismatches:
     """Yield that package.xml does not declare a library."""
     assert package.manifest is not None
     is_brought = _is_brought(package, use.key, declared)

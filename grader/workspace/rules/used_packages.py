@@ -49,6 +49,7 @@ _DIRECTIVE = re.compile(
 )
 _MAX_DIRECTIVE = 500  # characters of an #include, behind which none is searched
 OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|[._]test\.")
+_PlacedNames = Iterator[tuple[str, Location]]  # of packages, where a file names each
 
 
 class PackageUse(NamedTuple):
@@ -89,7 +90,7 @@ def used_packages(workspace: Workspace, package: Package) -> Iterator[PackageUse
         yield PackageUse(name, at, is_built=True)
 
 
-def _used_at_run_time(workspace: Workspace, package: Package) -> Iterator[tuple[str, Location]]:
+def _used_at_run_time(workspace: Workspace, package: Package) -> _PlacedNames:
     """Yield the packages that launch files, robots, Python and controllers name."""
     for owner, _, launch in workspace.launches.files:
         if owner is package:
@@ -107,9 +108,7 @@ def _used_at_run_time(workspace: Workspace, package: Package) -> Iterator[tuple[
     yield from _hardware_packages(workspace, package, names)
 
 
-def _found_by_xacro(
-    workspace: Workspace, package: Package, names: Collection[str]
-) -> Iterator[tuple[str, Location]]:
+def _found_by_xacro(workspace: Workspace, package: Package, names: Collection[str]) -> _PlacedNames:
     """Yield the packages of paths in URDF and xacro. A misspelt own one is a mistake of files."""
     for name, at in named_in_robots(workspace, package):
         workspace.charge(cost_of_guess(len(names)))
@@ -117,14 +116,14 @@ def _found_by_xacro(
             yield name, at
 
 
-def named_in_robots(workspace: Workspace, package: Package) -> Iterator[tuple[str, Location]]:
+def named_in_robots(workspace: Workspace, package: Package) -> _PlacedNames:
     """Yield the packages of paths in URDF and xacro."""
     for source in workspace.texts.read_sources(package, (".xacro", ".urdf")):
         for match in _FIND.finditer(source.text):
             yield match[1] or match[2], source.at(match.start())
 
 
-def _launched(launch: Launch) -> Iterator[tuple[str, Location]]:
+def _launched(launch: Launch) -> _PlacedNames:
     """Yield the packages whose programs or launch files a launch file starts.
 
     Among them is xacro, where it prints a robot.
@@ -142,7 +141,7 @@ def _launched(launch: Launch) -> Iterator[tuple[str, Location]]:
             yield inside.partition("/")[0], passed.location
 
 
-def _asked_for(workspace: Workspace, package: Package) -> Iterator[tuple[str, Location]]:
+def _asked_for(workspace: Workspace, package: Package) -> _PlacedNames:
     """Yield the packages for whose folder launch files, Python and C++ ask."""
     texts = workspace.texts
     launched = {
@@ -161,7 +160,7 @@ def _without_long_texts(text: str) -> str:
     return _LONG_TEXT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
 
 
-def calls_in(source: Source) -> Iterator[tuple[str, Location]]:
+def calls_in(source: Source) -> _PlacedNames:
     """Yield the packages for whose folder a text asks; a docstring of Python asks for none."""
     text = source.text
     if not any(word in text for word in _CALL_WORDS):
@@ -173,9 +172,7 @@ def calls_in(source: Source) -> Iterator[tuple[str, Location]]:
         yield match[word], source.at(match.start(word))
 
 
-def _imported(
-    workspace: Workspace, package: Package, names: Collection[str]
-) -> Iterator[tuple[str, Location]]:
+def _imported(workspace: Workspace, package: Package, names: Collection[str]) -> _PlacedNames:
     """Yield the packages of ROS 2 or of the workspace that the Python files of a package import.
 
     What every launch file imports does not count there.
@@ -247,9 +244,7 @@ def _list_modules(match: re.Match[str]) -> Iterator[tuple[str, int]]:
         offset += len(part) + 1
 
 
-def _controller_packages(
-    section: YamlNode, names: Collection[str]
-) -> Iterator[tuple[str, Location]]:
+def _controller_packages(section: YamlNode, names: Collection[str]) -> _PlacedNames:
     """Yield the packages of the controllers that a section of the controller manager names.
 
     `names` are the packages of the workspace, which may have controllers of their own.
@@ -265,7 +260,7 @@ def _controller_packages(
 
 def _hardware_packages(
     workspace: Workspace, package: Package, names: Collection[str]
-) -> Iterator[tuple[str, Location]]:
+) -> _PlacedNames:
     """Yield the packages of the hardware of robots that no package of the workspace declares."""
     for robot in workspace.robots.known:
         for system in robot.systems:
@@ -277,9 +272,7 @@ def _hardware_packages(
                     yield name, at
 
 
-def _included(
-    workspace: Workspace, package: Package, names: Collection[str]
-) -> Iterator[tuple[str, Location]]:
+def _included(workspace: Workspace, package: Package, names: Collection[str]) -> _PlacedNames:
     """Yield the packages of ROS 2 or of the workspace whose headers C++ files include.
 
     They are the files that a target compiles, and headers. What is included under a condition may

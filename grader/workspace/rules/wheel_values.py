@@ -34,7 +34,13 @@ from grader.workspace.graph.started_controllers import (
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.under_arguments import may_vary
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import (
+    Compared,
+    Facts,
+    Mismatch,
+    Mismatches,
+    warning,
+)
 from grader.workspace.rules.rule_table import (
     OTHER_VALUE,
     WRONG_VALUE,
@@ -115,7 +121,7 @@ class _Wheels(NamedTuple):
         return _joints(self.all)
 
 
-def wheel_value_facts(workspace: Workspace) -> Iterator[Fact]:
+def wheel_value_facts(workspace: Workspace) -> Facts:
     """Yield the numbers of wheels that are not those of the robot.
 
     They are warnings where there may be other robots. Nothing is said where xacro may place or size
@@ -134,7 +140,6 @@ def wheel_value_facts(workspace: Workspace) -> Iterator[Fact]:
 _WHEEL_LIMIT = Rule(
     "wheel-limit",
     "values",
-    OTHER_VALUE,
     OTHER_VALUE,
     "A wheel that is driven in Gazebo turns without limits.",
     why=(
@@ -234,7 +239,7 @@ def _reader_of_plugin(robot: KnownRobot, plugin: Element) -> _Parameters:
     return read
 
 
-def _find_faults(source: _Source, robot: Configuration) -> Iterator[Mismatch]:
+def _find_faults(source: _Source, robot: Configuration) -> Mismatches:
     """Yield the numbers, sides and directions that are not those of a robot."""
     compared: set[str] = set()  # the joints whose sides and directions were compared
     rows = sorted(source.rows.items(), key=lambda row: row[1].number not in _SIDED)
@@ -335,7 +340,6 @@ WHEEL_SIDE = Rule(
     "wheel-side",
     "values",
     WRONG_VALUE,
-    OTHER_VALUE,
     "The left and right wheels of a controller or a Gazebo plugin are on their sides.",
     why=(
         "A command to turn left turns the robot right. The odometry reports the opposite of the"
@@ -355,7 +359,7 @@ WHEEL_SIDE = Rule(
 )
 
 
-def _other_sides(placed: _PlacedWheels) -> Iterator[Mismatch]:
+def _other_sides(placed: _PlacedWheels) -> Mismatches:
     """Yield that left wheels are on the right, and the reverse.
 
     It is certain unless they turn backward too, as where the front of the robot is its -x.
@@ -378,7 +382,6 @@ _WHEEL_AXIS = Rule(
     "wheel-axis",
     "values",
     OTHER_VALUE,
-    OTHER_VALUE,
     "A positive speed of a wheel drives forward.",
     why=(
         "The wheel rotates backward at a forward command. The robot drives backward or rotates "
@@ -391,7 +394,7 @@ _WHEEL_AXIS = Rule(
 )
 
 
-def _other_axes(placed: _PlacedWheels) -> Iterator[Mismatch]:
+def _other_axes(placed: _PlacedWheels) -> Mismatches:
     """Yield wheels that turn about an axis across their axle, and wheels that turn backward.
 
     Nothing is said where left and right are exchanged as well, which is said of the sides.
@@ -418,7 +421,7 @@ def _other_axes(placed: _PlacedWheels) -> Iterator[Mismatch]:
         yield placed.fault(_WHEEL_AXIS, placed.backward, message)
 
 
-def _limited_wheels(placed: _PlacedWheels) -> Iterator[Mismatch]:
+def _limited_wheels(placed: _PlacedWheels) -> Mismatches:
     """Yield the wheels that stop after some turns, as those of a simulated robot do.
 
     Limits that are meant to be none are wider. A number that is of neither side may be of joints
@@ -470,7 +473,7 @@ class _WheelNumber(NamedTuple):
     word: _Word
 
 
-def _faults_of_number(number: _WheelNumber, wheels: _Wheels) -> Iterator[Mismatch]:
+def _faults_of_number(number: _WheelNumber, wheels: _Wheels) -> Mismatches:
     """Yield that a number is not what the wheels of the robot have."""
     value = finite_number(number.word.text)
     is_size = number.kind in ("radius", "diameter")
@@ -484,7 +487,6 @@ _WHEEL_DISTANCE = Rule(
     "wheel-distance",
     "values",
     WRONG_VALUE,
-    OTHER_VALUE,
     "The track and wheelbase of a controller or a Gazebo plugin are those of the robot.",
     why=(
         "The robot turns more or less than commanded. The angle of the odometry is wrong after "
@@ -504,7 +506,7 @@ _WHEEL_DISTANCE = Rule(
 )
 
 
-def _other_distance(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
+def _other_distance(number: _WheelNumber, value: float, wheels: _Wheels) -> Mismatches:
     """Yield that the wheels of the robot are not as far apart as a number says.
 
     The distance differs by more than their width and 2 %.
@@ -564,7 +566,6 @@ _WHEEL_SIZE = Rule(
     "wheel-size",
     "values",
     WRONG_VALUE,
-    OTHER_VALUE,
     "The wheel radius of a controller or a Gazebo plugin is that of the robot.",
     why=(
         "The robot drives faster or slower than commanded, and the distance of the odometry is "
@@ -584,7 +585,7 @@ _WHEEL_SIZE = Rule(
 )
 
 
-def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
+def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Mismatches:
     """Yield that no wheel has a radius, and that wheels of one radius have several.
 
     A negative radius certainly is a mistake.

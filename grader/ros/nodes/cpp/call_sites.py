@@ -7,7 +7,10 @@ from grader.ros.cpp.cpp_evaluation import CppEvaluation
 from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue
 from grader.ros.cpp.declarations import CppFunction, name_in, plain
 from grader.ros.cpp.objects import class_written
-from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.syntax import (
+    CppNode,
+    CppNodes,
+)
 from grader.ros.cpp.unit import CppUnit, called_name, list_arguments
 from grader.ros.python.budget import Budget
 
@@ -95,7 +98,7 @@ class CallSites:
     @cached_property
     def _sites(self) -> Mapping[str, Sequence[CppNode]]:
         """The calls by the last names of what they call: a function, or the class of an object."""
-        sites: dict[str, list[CppNode]] = {}
+        sites: dict[str, CppNodes] = {}
         for file in self._unit.files:
             self._budget.charge(1 + len(file.calls))
             for node in file.calls:
@@ -118,7 +121,7 @@ class CallSites:
         return variables[0].type if variables else name
 
 
-def _arguments(site: CppNode) -> list[CppNode]:
+def _arguments(site: CppNode) -> CppNodes:
     if site.kind != "declaration":
         return list_arguments(site)
     for node in site.walk():

@@ -10,14 +10,20 @@ from itertools import chain
 
 from grader.ros.cpp.declarations import CppFunction, declared_in, plain
 from grader.ros.cpp.objects import class_written
-from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.syntax import (
+    CppNode,
+    CppNodes,
+)
 from grader.ros.cpp.unit import (
     CppUnit,
     called_name,
     is_conditional,
     list_arguments,
 )
-from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    CodeFaults,
+)
 
 _MAX_FAULTS = 20  # of one target and rule
 # What works as long as something keeps it, and how it is called.
@@ -63,7 +69,7 @@ _ZERO = re.compile(r"-?(?:0++(?:\.0*+)?|\.0++)f?")
 
 def cpp_faults(
     unit: CppUnit, nodes: Collection[str], *, is_program: bool, is_read: bool
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield what is wrong in the files of a target.
 
     Args:
@@ -109,13 +115,13 @@ class _CppSearch:
             if is_own or "rate" in written.lower():
                 yield call
 
-    def _uses(self, name: str, function: CppFunction) -> list[CppNode]:
+    def _uses(self, name: str, function: CppFunction) -> CppNodes:
         """Return where a name is written in a function."""
         node = function.node
         uses = [use for use in self._unit.uses.get(name, ()) if use.file is node.file]
         return [use for use in uses if node.start <= use.start < node.end]
 
-    def without_activation(self) -> Iterator[CodeFault]:
+    def without_activation(self) -> CodeFaults:
         """Yield where a node with a lifecycle becomes active, and its publishers do not."""
         if any(next(self._calls(each, _ACTIVATES), None) for each in self._unit.functions):
             return
@@ -141,7 +147,7 @@ class _CppSearch:
                     yield CodeFault("publisher-activated", message, at, made.location)
                     break
 
-    def without_goal_state(self) -> Iterator[CodeFault]:
+    def without_goal_state(self) -> CodeFaults:
         """Yield action servers in files in which no goal succeeds or is aborted."""
         if not self._unit.uses.keys().isdisjoint(_ENDING_STATES):
             return
@@ -154,7 +160,7 @@ class _CppSearch:
                     )
                     yield CodeFault("goal-state", message, call.location, is_certain=False)
 
-    def rejected_goals(self) -> Iterator[CodeFault]:
+    def rejected_goals(self) -> CodeFaults:
         """Yield action servers in files in which goals are rejected, and none is accepted."""
         uses = self._unit.uses
         rejections = []
@@ -172,7 +178,7 @@ class _CppSearch:
                     )
                     yield CodeFault("goal-state", message, call.location, is_certain=False)
 
-    def destroyed(self) -> Iterator[CodeFault]:
+    def destroyed(self) -> CodeFaults:
         """Yield what a method makes and nothing keeps: it is destroyed when the method ends."""
         for function in self._methods:
             if function.is_conditional or _may_wait(function, self._unit):
@@ -188,7 +194,7 @@ class _CppSearch:
             if function.name == function.owner.rpartition("::")[2]:
                 yield from self._lost_listeners(function)
 
-    def _lost_listeners(self, constructor: CppFunction) -> Iterator[CodeFault]:
+    def _lost_listeners(self, constructor: CppFunction) -> CodeFaults:
         for node in self._unit.calls_in(constructor):
             written = plain(class_written(node))
             is_listener = written.rpartition("::")[2] == _LISTENER
@@ -216,7 +222,7 @@ class _CppSearch:
         names = [name for name, _ in declared_in(declaration)]
         return len(names) == 1 and len(self._uses(names[0].text, function)) == 1
 
-    def without_rotation(self) -> Iterator[CodeFault]:
+    def without_rotation(self) -> CodeFaults:
         """Yield transforms that are sent with a rotation whose four numbers are zeros."""
         for function in self._unit.functions:
             if function.body is None or not any(self._calls(function, "sendTransform")):
@@ -245,7 +251,7 @@ class _CppSearch:
                 return False
         return True
 
-    def without_listener(self) -> Iterator[CodeFault]:
+    def without_listener(self) -> CodeFaults:
         """Yield where a buffer is asked for transforms that nothing puts into it."""
         if self._is_made(_LISTENER) or "setTransform" in self._unit.uses:
             return
@@ -290,7 +296,7 @@ class _CppSearch:
             return False
         return all(_is_plain_use(use) for use in self._unit.uses[owner.text])
 
-    def without_spin(self) -> Iterator[CodeFault]:
+    def without_spin(self) -> CodeFaults:
         """Yield the end of a main() whose nodes nothing spins."""
         mains = [
             function
@@ -306,7 +312,7 @@ class _CppSearch:
             message = "nothing spins the node: its callbacks are never called"
             yield CodeFault("node-spins", message, mains[0].node.location)
 
-    def waiting(self) -> Iterator[CodeFault]:
+    def waiting(self) -> CodeFaults:
         """Yield callbacks that wait for a response, which the same thread would have to receive."""
         if any(name in self._unit.uses for name in _CONCURRENT):
             return
@@ -315,7 +321,7 @@ class _CppSearch:
                 yield from self._waiting_in(function)
                 yield from self._sleeping_in(function)
 
-    def _sleeping_in(self, function: CppFunction) -> Iterator[CodeFault]:
+    def _sleeping_in(self, function: CppFunction) -> CodeFaults:
         """Yield where a callback sleeps, in a program with another callback."""
         if not self._has_several_callbacks:
             return
@@ -335,7 +341,7 @@ class _CppSearch:
             count += len([*self._calls(function, *_KEPT)])
         return count > 1 or not self._words().isdisjoint(_OTHER_CALLBACKS)
 
-    def _waiting_in(self, function: CppFunction) -> Iterator[CodeFault]:
+    def _waiting_in(self, function: CppFunction) -> CodeFaults:
         """Yield where a method waits in a callback.
 
         What it spins raises an error, or is another node, which receives the response.
@@ -448,9 +454,9 @@ def _is_callback_argument(node: CppNode) -> bool:
     return called_name(call).rpartition("::")[2] in _GIVEN_CALLBACKS
 
 
-def _assigned_rotations(function: CppFunction) -> dict[str, dict[str, list[CppNode]]]:
+def _assigned_rotations(function: CppFunction) -> dict[str, dict[str, CppNodes]]:
     """Return what a function assigns to the numbers of rotations, by paths and numbers."""
-    rotations: dict[str, dict[str, list[CppNode]]] = {}
+    rotations: dict[str, dict[str, CppNodes]] = {}
     for node in function.node.walk():
         if node.kind != "assignment_expression":
             continue

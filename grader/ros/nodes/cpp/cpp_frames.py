@@ -8,7 +8,10 @@ from itertools import chain
 from grader.base.transforms import Transform
 from grader.ros.cpp.cpp_evaluation import CppEvaluation
 from grader.ros.cpp.declarations import CppFunction, find_declaration
-from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.syntax import (
+    CppNode,
+    CppNodes,
+)
 from grader.ros.cpp.unit import CppUnit, called_name, list_arguments
 from grader.ros.nodes.cpp.rclcpp_calls import read_name
 from grader.ros.nodes.node_facts import FrameUse, NodeFrame, NodeTransform
@@ -103,9 +106,9 @@ class _Variables:
         return _values_by_field(use for use in uses if use.file is self.function.node.file)
 
 
-def _values_by_field(uses: Iterable[CppNode]) -> dict[str, list[CppNode]]:
+def _values_by_field(uses: Iterable[CppNode]) -> dict[str, CppNodes]:
     """Return what is assigned to members, by the whole text of each."""
-    values: dict[str, list[CppNode]] = {}
+    values: dict[str, CppNodes] = {}
     for use in uses:
         member = use.parent
         setting = member.parent if member is not None else None
@@ -255,7 +258,7 @@ def _frame(kind: FrameUse, node: CppNode, evaluation: CppEvaluation) -> NodeFram
     return NodeFrame(kind, name, node.location, parts)
 
 
-def _is_known_transform(given: list[CppNode], variables: _Variables) -> bool:
+def _is_known_transform(given: CppNodes, variables: _Variables) -> bool:
     """Return whether what is sent is one transform whose child frame the function itself sets."""
     if len(given) != 1 or given[0].kind != "identifier":
         return False

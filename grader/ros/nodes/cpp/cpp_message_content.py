@@ -14,7 +14,10 @@ from grader.ros.cpp.cpp_evaluation import CppEvaluation, is_member_of_this
 from grader.ros.cpp.cpp_values import CppName
 from grader.ros.cpp.declarations import CppFunction, declared_in, name_in, plain
 from grader.ros.cpp.objects import class_written, find_variable
-from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.syntax import (
+    CppNode,
+    CppNodes,
+)
 from grader.ros.cpp.unit import CppUnit, called_name, is_conditional, list_arguments
 from grader.ros.known.package_tables import colour_encodings
 from grader.ros.nodes.cpp.rclcpp_calls import message_type
@@ -80,7 +83,7 @@ class CppContentReader:
 
     def _compared_by(
         self, node: CppNode, root: CppNode
-    ) -> tuple[str, list[str | None], list[CppNode]] | None:
+    ) -> tuple[str, list[str | None], CppNodes] | None:
         """Return the policy of message_filters that a template is, with the types of messages.
 
         The last are where these types are written. The result is None for another template, and
@@ -144,7 +147,7 @@ class CppContentReader:
 
     def _published(self, variable: CppNode, made: CppNode) -> Sequence[CppNode] | None:
         """Return the calls of publish() of a publisher; None where it may publish elsewhere."""
-        calls: list[CppNode] = []
+        calls: CppNodes = []
         for use in self._evaluation.find_uses(variable) or ():
             of_use = _publishing_calls(_whole(use), made)
             if of_use is None:
@@ -245,8 +248,8 @@ class CppContentReader:
         uses = self._evaluation.find_uses(name)
         if uses is None:
             return None
-        values: list[CppNode] = []
-        encodings: list[CppNode] = []
+        values: CppNodes = []
+        encodings: CppNodes = []
         for use in uses:
             node = _wrapped(use)
             if node.parent is None:
@@ -410,7 +413,7 @@ def _unwrapped(node: CppNode) -> CppNode:
             return node
 
 
-def _encoding_set(member: CppNode) -> list[CppNode] | None:
+def _encoding_set(member: CppNode) -> CppNodes | None:
     """Return the assignment of an encoding where a member of an image is named.
 
     There is none for another member. The result has None where the encoding may be set in another
@@ -483,7 +486,7 @@ def _compared_types(
             yield SynchronisedType(type_name, synchroniser, at.location, known)
 
 
-def _publishing_calls(node: CppNode, made: CppNode) -> list[CppNode] | None:
+def _publishing_calls(node: CppNode, made: CppNode) -> CppNodes | None:
     """Return the call of publish() that a use of a publisher is.
 
     There is none where it is another harmless use. The result is None where the publisher may
@@ -504,7 +507,7 @@ def _publishing_calls(node: CppNode, made: CppNode) -> list[CppNode] | None:
     return [] if is_harmless else None
 
 
-def _calls_of_method(call: CppNode, method: str) -> list[CppNode] | None:
+def _calls_of_method(call: CppNode, method: str) -> CppNodes | None:
     """Return the call of a publisher's method if it is publish(); None where it may publish."""
     if call.kind != "call_expression":
         return None
@@ -513,7 +516,7 @@ def _calls_of_method(call: CppNode, method: str) -> list[CppNode] | None:
     return [] if method in _HARMLESS_METHODS else None
 
 
-def _value_set(use: CppNode, node: CppNode, parent: CppNode) -> list[CppNode] | None:
+def _value_set(use: CppNode, node: CppNode, parent: CppNode) -> CppNodes | None:
     """Return the value that a use of an image sets it to, if it sets it.
 
     The result is None where the use may set it to something that is not known.

@@ -23,7 +23,10 @@ from grader.ros.cpp.declarations import (
     plain,
 )
 from grader.ros.cpp.objects import class_written, find_object, find_taker, find_variable
-from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.syntax import (
+    CppNode,
+    CppNodes,
+)
 from grader.ros.cpp.unit import (
     called_name,
     is_conditional,
@@ -51,6 +54,7 @@ from grader.ros.nodes.cpp.rclcpp_calls import (
 )
 from grader.ros.nodes.node_facts import (
     CodeFault,
+    CodeFaults,
     Doubt,
     Endpoint,
     FieldUse,
@@ -168,7 +172,7 @@ class _Target:
         # What is given a node, and the calls of methods of what holds one.
         self._flows: dict[NodeKey, dict[NodeKey, None]] = {}
         self._pending: list[Holder] = []
-        self._loose_calls: dict[Holder, list[CppNode]] = {}
+        self._loose_calls: dict[Holder, CppNodes] = {}
         known = {*self._node_classes, *cpp_table().nodes}
         self._holders = NodeHolders(self._unit, frozenset(known), self._key_made, budget)
         for created in self._created:
@@ -287,7 +291,7 @@ class _Target:
         is_own = not is_other or self._is_own_function(call, called_name(call), function)
         return None if is_own else Holder("own", name, "")
 
-    def _uses_in(self, function: CppFunction, name: str) -> list[CppNode]:
+    def _uses_in(self, function: CppFunction, name: str) -> CppNodes:
         """Return where a function has a name."""
         inside = function.node
         uses = [use for use in self._unit.uses.get(name, ()) if use.file is inside.file]
@@ -697,7 +701,7 @@ class _Target:
                 Doubt("its program gives it a namespace", given[1].location)
             )
 
-    def faults(self) -> Iterator[CodeFault]:
+    def faults(self) -> CodeFaults:
         """Yield what keeps the nodes of the target from doing anything."""
         created = [
             started.node if started.node in self._facts else started.class_name
@@ -715,7 +719,7 @@ class _Target:
         """Whether functions of the target make nodes."""
         return bool(self._created)
 
-    def unregistered(self, package: Package) -> Iterator[CodeFault]:
+    def unregistered(self, package: Package) -> CodeFaults:
         """Yield the components that CMakeLists.txt registers and no source does."""
         target, setup = self._compiled.target, package.installation
         is_read = target.is_certain and not self._compiled.unread

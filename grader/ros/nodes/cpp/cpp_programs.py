@@ -1,14 +1,17 @@
 """C++ programs and components that do not link, do not compile, or stop when they make a node."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from grader.ros.cpp.declarations import CppClass, plain
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import CppUnit, called_name
 from grader.ros.known.cmake_words import cmake_words
 from grader.ros.nodes.cpp.cpp_files import CompiledTarget
-from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    CodeFaults,
+)
 
 _SOURCES = (".cpp", ".cc", ".cxx", ".c++")
 _MAIN = re.compile(r"(?<![a-z])main(?![a-z])")
@@ -24,7 +27,7 @@ _SMALL_LIBRARIES = frozenset({"m", "dl", "pthread", "rt", "stdc++fs", "Threads",
 _MESSAGES = ("_msgs", "_srvs", "_interfaces")
 
 
-def program_faults(compiled: CompiledTarget, *, starts_nodes: bool) -> Iterator[CodeFault]:
+def program_faults(compiled: CompiledTarget, *, starts_nodes: bool) -> CodeFaults:
     """Yield why a target does not build, or why its program stops at once.
 
     Args:
@@ -41,7 +44,7 @@ def program_faults(compiled: CompiledTarget, *, starts_nodes: bool) -> Iterator[
             yield from _without_init(compiled)
 
 
-def _without_main(compiled: CompiledTarget) -> Iterator[CodeFault]:
+def _without_main(compiled: CompiledTarget) -> CodeFaults:
     """Yield that no source of a program has a main()."""
     target, unit = compiled.target, compiled.unit
     others = (*target.links, *target.packages)
@@ -57,7 +60,7 @@ def _without_main(compiled: CompiledTarget) -> Iterator[CodeFault]:
     yield CodeFault("program-main", message, compiled.at)
 
 
-def _without_init(compiled: CompiledTarget) -> Iterator[CodeFault]:
+def _without_init(compiled: CompiledTarget) -> CodeFaults:
     """Yield that a program makes nodes, and nothing in it calls rclcpp::init().
 
     A library that is not read may call it, and so may what main() gives its arguments.
@@ -89,7 +92,7 @@ def _is_known_library(name: str) -> bool:
     return name in known or name.lower() in known or name.endswith(_MESSAGES)
 
 
-def _components_without_constructor(unit: CppUnit) -> Iterator[CodeFault]:
+def _components_without_constructor(unit: CppUnit) -> CodeFaults:
     """Yield the registered classes of nodes that no NodeOptions can make.
 
     rclcpp_components makes them with std::make_shared<Class>(options).

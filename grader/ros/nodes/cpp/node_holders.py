@@ -19,7 +19,10 @@ from grader.ros.cpp.declarations import (
     plain,
 )
 from grader.ros.cpp.objects import class_written, made_in
-from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.syntax import (
+    CppNode,
+    CppNodes,
+)
 from grader.ros.cpp.unit import CppUnit, called_name, list_arguments, template_arguments
 from grader.ros.known.package_tables import cpp_table
 from grader.ros.python.budget import Budget
@@ -76,7 +79,7 @@ class NodeHolders:
         """
         self._unit, self._classes, self._budget = unit, node_classes, budget
         self._node_made = node_made
-        self._declared: dict[tuple[CppNode, str], list[CppNode]] = {}
+        self._declared: dict[tuple[CppNode, str], CppNodes] = {}
         self._types: dict[tuple[str, tuple[str, ...]], bool] = {}
 
     # --- Types
@@ -168,7 +171,7 @@ class NodeHolders:
             return self._node_of_local(declared[0], function, depth)
         return self._holder_of_member(self._unit.find_owner(function), name)
 
-    def _declared_in(self, function: CppFunction, name: str) -> list[CppNode]:
+    def _declared_in(self, function: CppFunction, name: str) -> CppNodes:
         """Return the names in the declarations of a local variable or parameter of a function."""
         key = (function.node, name)
         if key not in self._declared:
@@ -176,7 +179,7 @@ class NodeHolders:
             self._declared[key] = [use for use in uses if find_declaration(use) is not None]
         return self._declared[key]
 
-    def _uses_in(self, function: CppFunction, name: str) -> list[CppNode]:
+    def _uses_in(self, function: CppFunction, name: str) -> CppNodes:
         inside, uses = function.node, self._unit.uses.get(name, ())
         self._budget.charge(1 + len(uses))
         in_file = [use for use in uses if use.file is inside.file]

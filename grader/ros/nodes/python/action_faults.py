@@ -1,12 +1,15 @@
 """What nodes in Python do wrong with actions."""
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from grader.base.source import Location
 from grader.ros.nodes.message_uses import CodePart
-from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    CodeFaults,
+)
 from grader.ros.python.constants import dotted
 from grader.ros.python.parse import AnyFunction, Code
 from grader.ros.python.walking import walk
@@ -25,7 +28,7 @@ class RegisteredGoal(NamedTuple):
     call: ast.Call
 
 
-def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Iterator[CodeFault]:
+def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> CodeFaults:
     """Yield functions that end without setting the state of their goal: rclpy aborts it then.
 
     One that gives the goal to something else, or keeps it, may set it there. A function that only
@@ -52,7 +55,7 @@ def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Ite
         yield CodeFault("goal-state", message, at, place, is_certain=False)
 
 
-def rejected_goals(code: Code, registered: Sequence[RegisteredGoal]) -> Iterator[CodeFault]:
+def rejected_goals(code: Code, registered: Sequence[RegisteredGoal]) -> CodeFaults:
     """Yield functions that answer each goal without GoalResponse.ACCEPT: rclpy rejects all goals.
 
     One that raises an error, or answers with what is computed, may accept goals elsewhere.
@@ -185,7 +188,7 @@ def loops_without_transforms(
     code: Code,
     registered: Sequence[RegisteredGoal],
     methods: Mapping[tuple[Location | None, str], AnyFunction],
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield loops of goals that look up transforms, which one thread does not read meanwhile."""
     own_methods = {name: function for (_, name), function in methods.items()}
     for goal in registered:
@@ -223,7 +226,7 @@ def answers_for_results(
     code: Code,
     parts: Sequence[CodePart],
     methods: Mapping[tuple[Location | None, str], AnyFunction],
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield fields of a result that are read of the answer, which has it as its field `result`."""
     callbacks: dict[tuple[Location | None, str], set[bool]] = {}
     for part in parts:
@@ -258,7 +261,7 @@ def _asks_for_result(node: ast.expr) -> bool:
     return False
 
 
-def _wrong_fields(code: Code, function: AnyFunction) -> Iterator[CodeFault]:
+def _wrong_fields(code: Code, function: AnyFunction) -> CodeFaults:
     """Yield the fields that the callback of a result reads of `future.result()`."""
     names = [parameter.arg for parameter in function.args.args if parameter.arg != "self"]
     if len(names) != 1:

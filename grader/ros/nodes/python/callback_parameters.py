@@ -6,14 +6,17 @@ defines again or replaces.
 """
 
 import ast
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 from grader.base.source import Location
 from grader.base.text import counted
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
-from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    CodeFaults,
+)
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import dotted, last_name
 from grader.ros.python.parse import AnyFunction, Code, own_nodes
@@ -124,7 +127,7 @@ def wrong_callbacks(
     parts: Sequence[CodePart],
     functions: CallbackFunctions,
     is_of_rclpy: Callable[[ast.Call, CodePart], bool],
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield the callbacks that cannot be called with what rclpy gives them.
 
     `is_of_rclpy` says whether a call surely is one of rclpy's.
@@ -142,7 +145,7 @@ def wrong_callbacks(
 
 def _find_faults(
     code: Code, part: CodePart, call: ast.Call, functions: CallbackFunctions
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield the callbacks that a call is given and that cannot be called."""
     called = last_name(call.func)
     for callback in _CALLBACKS[called]:

@@ -30,6 +30,12 @@ class CodeEdits:
         edit = self._source.edit(start, end, new)
         return Fixes(lambda: [Fix((edit,), f"{edit.old} is read as {new}")])
 
+    def rewrite_in(self, statement: ast.stmt, written: str, new: str) -> Fixes:
+        """Return the fix that writes another text for the first one in a statement, if any."""
+        start, end = self.span(statement)
+        at = self._source.text.find(written, start, end)
+        return self.rewrite(at, at + len(written), new) if new and at >= 0 else NO_FIXES
+
     def insert(self, offset: int, text: str, assumption: str) -> Fixes:
         """Return the fix that adds a text."""
         edit = self._source.edit(offset, offset, text)

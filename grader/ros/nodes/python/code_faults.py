@@ -20,7 +20,10 @@ from grader.base.text import cut, enumerated
 from grader.ros.known.package_tables import python_table
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
-from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    CodeFaults,
+)
 from grader.ros.nodes.python.action_faults import (
     RegisteredGoal,
     answers_for_results,
@@ -44,7 +47,6 @@ from grader.ros.nodes.python.called_functions import (
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.log_calls import wrong_log_calls
 from grader.ros.nodes.python.node_constructors import early_uses
-from grader.ros.nodes.python.parameter_values import parameters_as_values
 from grader.ros.nodes.python.python_calls import WrongCall
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
 from grader.ros.nodes.python.transform_buffers import buffers_without_listener
@@ -158,7 +160,7 @@ def code_faults(
     others: Mapping[str, ModuleText],
     attributes: _PackageAttributes,
     releases: Sequence[Release],
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield what is wrong in a module.
 
     `others` are all modules of the package, by their names, and `attributes` those of all of
@@ -166,7 +168,8 @@ def code_faults(
     """
     search = _Search(module, others, attributes)
     yield from undefined_names(module.code)
-    yield from wrong_imports(module.code)
+    names = {re.split("[./]", name.removesuffix(".py"))[-1] for name in others}
+    yield from wrong_imports(module.code, names)
     yield from search.uncalled_main()
     yield from search.undefined_attributes()
     yield from search.called_callbacks()
@@ -177,11 +180,10 @@ def code_faults(
     yield from _early_uses(module, others, attributes)
     yield from _wrong_calls(module, others, releases or RELEASES)
     yield from wrong_log_calls(module.code, module.parts)
-    yield from parameters_as_values(module.code, module.nodes.values())
     yield from search.of_actions()
 
 
-def said_faults(faults: Iterable[CodeFault]) -> Iterator[CodeFault]:
+def said_faults(faults: Iterable[CodeFault]) -> CodeFaults:
     """Yield the faults of a module that are said: of a name the first, and not too many.
 
     They have the fixes of which it is certain what they write.
@@ -202,7 +204,7 @@ def _certain_fixes(fault: CodeFault) -> list[Fix]:
 
 def _early_uses(
     module: ModuleText, others: Mapping[str, ModuleText], attributes: _PackageAttributes
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield what constructors of nodes use before the node is made, or without that."""
     bases = set[str]()
     for other in others.values():
@@ -229,7 +231,7 @@ def _find_spun(module: ModuleText) -> set[str]:
 
 def _wrong_calls(
     module: ModuleText, others: Mapping[str, ModuleText], releases: Sequence[Release]
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield the calls of rclpy and tf2_ros whose arguments Python cannot bind."""
     nodes = every_node(module.code.tree)
     if binds_unseen(nodes):
@@ -344,7 +346,7 @@ class _Search:
         function = self._callbacks.find(part, node)
         return None if isinstance(function, ast.Lambda) else function
 
-    def undefined_attributes(self) -> Iterator[CodeFault]:
+    def undefined_attributes(self) -> CodeFaults:
         """Yield the attributes of self that a class of nodes reads, and nothing sets or defines."""
         attributes = self._attributes
         if attributes.may_be_more:
@@ -357,7 +359,7 @@ class _Search:
 
     def _undefined_in(
         self, part: CodePart, owner: ast.ClassDef, known: Collection[str], asked: set[str]
-    ) -> Iterator[CodeFault]:
+    ) -> CodeFaults:
         """Yield those of a method, wherever they are used."""
         own_names = names_in_class(owner)
         read: list[ast.Attribute] = []
@@ -390,7 +392,7 @@ class _Search:
 
     # --- Callbacks
 
-    def called_callbacks(self) -> Iterator[CodeFault]:
+    def called_callbacks(self) -> CodeFaults:
         """Yield callbacks that are called in place of passed."""
         for registered in self._registered:
             is_of_rclpy = self._is_of_rclpy(registered.call, registered.part)
@@ -415,7 +417,7 @@ class _Search:
                 fixes = self._edits.rewrite(*self._edits.span(registered.given), name)
             yield CodeFault("callback-call", message, at, fixes=fixes)
 
-    def wrong_parameters(self) -> Iterator[CodeFault]:
+    def wrong_parameters(self) -> CodeFaults:
         """Yield callbacks that cannot take what they are called with."""
         if not self._attributes.may_be_more:
             yield from wrong_callbacks(
@@ -449,7 +451,7 @@ class _Search:
             return None
         return self._find(registered.given, registered.part)
 
-    def without_response(self) -> Iterator[CodeFault]:
+    def without_response(self) -> CodeFaults:
         """Yield callbacks of services and actions that return nothing."""
         said = set[ast.AST]()
         for registered in self._registered:
@@ -473,9 +475,7 @@ class _Search:
                     "service-response", message, at, self._at(registered.call), is_certain
                 )
 
-    def _wrong_responses(
-        self, function: AnyFunction, registered: _Registered
-    ) -> Iterator[CodeFault]:
+    def _wrong_responses(self, function: AnyFunction, registered: _Registered) -> CodeFaults:
         """Yield where the callback of a service certainly returns something else."""
         for statement in _own_statements(function.body):
             if not isinstance(statement, ast.Return) or statement.value is None:
@@ -489,7 +489,7 @@ class _Search:
                 at, related = self._at(statement), self._at(registered.call)
                 yield CodeFault("service-response", message, at, related)
 
-    def waiting_callbacks(self) -> Iterator[CodeFault]:
+    def waiting_callbacks(self) -> CodeFaults:
         """Yield what callbacks wait for while nothing else can run.
 
         Nothing else can run with one thread, and one group of callbacks.
@@ -522,7 +522,7 @@ class _Search:
         bound = count_bound(every_node(self._code.tree) if made else ())
         return {name for name in made if bound[name.rpartition(".")[2]] == made.count(name)}
 
-    def _loops(self, function: AnyFunction) -> Iterator[CodeFault]:
+    def _loops(self, function: AnyFunction) -> CodeFaults:
         """Yield the loops of a callback that do nothing until another callback has run."""
         for node in walk(function):
             if not isinstance(node, ast.While) or not _only_waits(node.body):
@@ -575,7 +575,7 @@ class _Search:
                 given += functions.get(dotted(node).removeprefix("self."), ())
         return _with_callees(given, functions)
 
-    def _sleeping(self, function: AnyFunction) -> Iterator[CodeFault]:
+    def _sleeping(self, function: AnyFunction) -> CodeFaults:
         """Yield where a callback first sleeps, in a module with another callback."""
         text = self._code.source.text
         has_others = len(self._registered) > 1 or any(word in text for word in _OTHER_CALLBACKS)
@@ -590,7 +590,7 @@ class _Search:
 
     def _waiting(
         self, call: ast.Call, name: str, clients: Collection[str], rates: Collection[str]
-    ) -> Iterator[CodeFault]:
+    ) -> CodeFaults:
         called = dotted(call.func)
         owner, _, method = called.rpartition(".")
         if any(keyword.arg == "timeout_sec" for keyword in call.keywords) or len(call.args) > 2:
@@ -658,7 +658,7 @@ class _Search:
                         pending.append(other)
         yield from related.values()
 
-    def of_actions(self) -> Iterator[CodeFault]:
+    def of_actions(self) -> CodeFaults:
         """Yield what is done wrong with actions and transforms."""
         goals, answering = list[RegisteredGoal](), list[RegisteredGoal]()
         servers = [each for each in self._registered if each.by == "ActionServer"]
@@ -693,7 +693,7 @@ class _Search:
 
     # --- Programs
 
-    def of_programs(self) -> Iterator[CodeFault]:
+    def of_programs(self) -> CodeFaults:
         """Yield that a module makes a node without rclpy.init(), or one that nothing spins.
 
         The latter is a node with callbacks that never run, with rclpy.init().
@@ -715,7 +715,7 @@ class _Search:
             fixes = self._edits.add_first(part.node.body, "rclpy.init()")
             yield CodeFault("rclpy-init", message, self._at(spin), fixes=fixes)
 
-    def _unspun(self, init: ast.Call, reached: Sequence[ModuleText]) -> Iterator[CodeFault]:
+    def _unspun(self, init: ast.Call, reached: Sequence[ModuleText]) -> CodeFaults:
         """Yield that nothing spins a node with callbacks, or that it is spun once."""
         # A TransformListener can spin the node in a thread.
         if any("spin_thread" in module.code.source.text for module in reached):
@@ -750,7 +750,7 @@ class _Search:
                 return self._edits.rewrite(start, end, f"rclpy.spin({made})")
         return NO_FIXES
 
-    def uncalled_main(self) -> Iterator[CodeFault]:
+    def uncalled_main(self) -> CodeFaults:
         """Yield that a file that is a program defines main(), and calls nothing."""
         tree, text = self._code.tree, self._code.source.text
         main = next((node for node in tree.body if getattr(node, "name", "") == "main"), None)
@@ -815,7 +815,7 @@ class _Search:
                 inside.update(walk(function))
         return inside
 
-    def _spun_once(self, reached: Sequence[ModuleText]) -> Iterator[CodeFault]:
+    def _spun_once(self, reached: Sequence[ModuleText]) -> CodeFaults:
         """Yield that a program runs one callback of a node at most.
 
         It is certain for a node that surely has several. One without a timeout may wait for the

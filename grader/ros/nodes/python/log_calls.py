@@ -2,10 +2,13 @@
 
 import ast
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from grader.ros.nodes.message_uses import CodePart, certain_nodes
-from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    CodeFaults,
+)
 from grader.ros.python.constants import last_name
 from grader.ros.python.parse import Code
 
@@ -21,7 +24,7 @@ _IS_NO_METHOD = re.compile(
 )
 
 
-def wrong_log_calls(code: Code, parts: Sequence[CodePart]) -> Iterator[CodeFault]:
+def wrong_log_calls(code: Code, parts: Sequence[CodePart]) -> CodeFaults:
     """Yield calls of get_logger() with several texts, or with options of Python's own loggers.
 
     They raise a TypeError. Without its parentheses, get_logger has no such method.

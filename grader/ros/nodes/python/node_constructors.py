@@ -1,10 +1,13 @@
 """Constructors of nodes that use the node before its base class is initialised, or without that."""
 
 import ast
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 
 from grader.base.problems import NO_FIXES
-from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    CodeFaults,
+)
 from grader.ros.nodes.python.called_functions import list_methods, names_in_class
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.rclpy_names import HARMLESS
@@ -39,7 +42,7 @@ def early_uses(
     replaced: Collection[str],
     bases: Collection[str],
     spun: Collection[str],
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield the first call in a constructor that needs what super().__init__() makes.
 
     Without such a call, yield that super().__init__() is missing in a class that is `spun`.

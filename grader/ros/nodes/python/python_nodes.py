@@ -55,7 +55,7 @@ from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bind
 from grader.ros.nodes.python.inherited_nodes import OwnClass, with_inherited
 from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
 from grader.ros.nodes.python.rclpy_names import HARMLESS, NODE_CLASSES
-from grader.ros.nodes.python.undefined_names import wrong_fields
+from grader.ros.nodes.python.undefined_names import wrong_fields, wrong_objects
 from grader.ros.nodes.python.unused_publishers import unused_publishers
 from grader.ros.package.entry_points import (
     entry_as_meant,
@@ -295,7 +295,9 @@ def _search_faults(modules: Collection["_Module"], releases: Sequence[Release]) 
         left -= len(source.text)
         try:
             if left >= 0:
-                faults[source.path] = [*code_faults(text, by_name, attributes, releases)]
+                computed = wrong_objects(source, module.field_uses)
+                of_code = code_faults(text, by_name, attributes, releases)
+                faults[source.path] = [*of_code, *computed]
         except RecursionError:
             left = -1
         is_whole = is_whole and left >= 0
@@ -625,7 +627,8 @@ class _Module:
     @cached_property
     def field_uses(self) -> Sequence[FieldUse]:
         """The fields that the module uses of messages, services and actions."""
-        return [*field_uses(self._code, self._parts, self._constants.evaluate_node)]
+        nodes = self.text().nodes
+        return [*field_uses(self._code, self._parts, self._constants.evaluate_node, nodes)]
 
     def _node(
         self,

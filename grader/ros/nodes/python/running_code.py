@@ -143,7 +143,7 @@ class _RunningCode:
                 case ast.AnnAssign(target=target, value=value):
                     pending += [target, *([value] if value is not None else [])]
                     continue
-                case ast.Name():
+                case ast.Name() | ast.Import() | ast.ImportFrom():
                     self._keep(make_position(part))
                 case ast.Attribute(attr=name):
                     end = (part.end_col_offset or 0) - len(name) + 1

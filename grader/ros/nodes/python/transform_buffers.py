@@ -1,9 +1,9 @@
 """Buffers of transforms that nodes in Python ask, and that nothing fills."""
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
-from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.node_facts import CodeFault, CodeFaults
 from grader.ros.python.constants import dotted
 from grader.ros.python.parse import Code, every_node
 
@@ -11,7 +11,7 @@ _BUFFERS = ("tf2_ros.Buffer", "tf2_ros.buffer.Buffer")
 _LOOKS_UP = frozenset({"lookup_transform", "can_transform", "transform", "lookup_transform_async"})
 
 
-def buffers_without_listener(code: Code, names: Mapping[str, str]) -> Iterator[CodeFault]:
+def buffers_without_listener(code: Code, names: Mapping[str, str]) -> CodeFaults:
     """Yield the buffers that look up transforms, and that nothing fills.
 
     `names` has the full names of what is imported. A buffer that anything is given may be filled.

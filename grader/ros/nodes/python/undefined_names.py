@@ -1,21 +1,26 @@
 """What Python code uses and nothing defines: names, messages of a module, fields of messages."""
 
 import ast
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Sequence
 
 from grader.base.names import near
 from grader.base.problems import NO_FIXES, Fixes
 from grader.base.source import Source
 from grader.ros.interfaces.interface_types import Interface
 from grader.ros.interfaces.known_interfaces import known_interfaces
-from grader.ros.known.package_tables import INTERFACE_KINDS, interface_table
+from grader.ros.known.package_tables import INTERFACE_KINDS, interface_table, python_table
 from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import Release
-from grader.ros.nodes.node_facts import CodeFault, FieldUse
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    CodeFaults,
+    FieldUse,
+)
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.used_fields import resolve_field
 from grader.ros.python.bindings import names_bound
 from grader.ros.python.constants import binds_unseen
+from grader.ros.python.library import find_meant_module
 from grader.ros.python.parse import Code, Position, every_node, location_in, make_position
 from grader.ros.python.walking import walk
 
@@ -41,7 +46,7 @@ _MESSAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "nav_msgs", "builtin_in
 _OF_OTHERS = ("Image", "Path")
 
 
-def undefined_names(code: Code) -> Iterator[CodeFault]:
+def undefined_names(code: Code) -> CodeFaults:
     """Yield the names that are not defined, wherever they are used.
 
     Texts that are formatted with too little are yielded, too.
@@ -112,35 +117,48 @@ def _unevaluated(tree: ast.Module) -> set[Position]:
     return places
 
 
-def wrong_imports(code: Code) -> Iterator[CodeFault]:
-    """Yield the first import of a well-known message that certainly fails.
+def wrong_imports(code: Code, own_modules: Collection[str]) -> CodeFaults:
+    """Yield the first import of a well-known message or module that certainly fails.
 
-    Only statements of the module itself count: others may be prepared for a failure.
+    Only statements of the module itself count: others may be prepared for a failure. `own_modules`
+    are those of its package.
     """
     for statement in code.tree.body:
-        if isinstance(statement, ast.ImportFrom) and statement.module and not statement.level:
-            message = _why_wrong(statement.module, [name.name for name in statement.names])
-            if message:
-                at = code.at(statement)
-                yield CodeFault("name-binding", message, at)
+        imports: list[tuple[str, list[str]]] = []
+        match statement:
+            case ast.Import(names=names):
+                imports = [(alias.name, []) for alias in names]
+            case ast.ImportFrom(module=str(module), names=names, level=0):
+                imports = [(module, [alias.name for alias in names])]
+        for module, imported in imports:
+            message, meant = _why_wrong(module, imported)
+            if message and module.partition(".")[0] not in own_modules:
+                fixes = CodeEdits(code.source).rewrite_in(statement, module, meant)
+                yield CodeFault("name-binding", message, code.at(statement), fixes=fixes)
                 return
 
 
-def _why_wrong(module: str, names: list[str]) -> str:
-    """Return why an import fails; empty for one that does not, or of which it is not known."""
+def _why_wrong(module: str, names: Sequence[str]) -> tuple[str, str]:
+    """Return why an import fails, and the module that is meant; empty for one that may not."""
     package, _, section = module.partition(".")
     if section.partition(".")[0] in INTERFACE_KINDS:
-        return ""
+        return "", ""
     for kind, known in (interface_table(package) or {}).items():
         for name in names:
             if name in known:
-                return f"{module} has no {name}: write from {package}.{kind} import {name}"
-    return ""
+                meant = f"{package}.{kind}"
+                message = f"{module} has no {name}: write from {meant} import {name}"
+                return message, meant if known.keys() >= {*names} else ""
+    other = find_meant_module(module, python_table().modules)
+    if other is None:
+        return "", ""
+    guess = f"; did you mean {other}?" if other else ": it is of ROS 1"
+    return f"there is no module {module}{guess}", other
 
 
 def wrong_fields(
     source: Source, uses: Iterable[FieldUse], releases: Collection[Release]
-) -> Iterator[CodeFault]:
+) -> CodeFaults:
     """Yield the fields that well-known types do not have, where it is sure what is meant."""
 
     def find(package: str, name: str) -> Interface | None:
@@ -156,3 +174,16 @@ def wrong_fields(
             fixes = CodeEdits(source).rewrite(start, start + len(used.name), meant)
             message = f"{used.owner} has no {used.noun} {used.name}"
             yield CodeFault("interface-field", message, use.location, fixes=fixes)
+
+
+def wrong_objects(source: Source, uses: Iterable[FieldUse]) -> CodeFaults:
+    """Yield the objects of rclpy that code uses in place of their values."""
+    for use in uses:
+        if use.instead is None:
+            continue
+        name, lacks, end = use.instead
+        is_field = not use.type.startswith("rclpy.")
+        where = f"the field {use.path[-1]} gets" if is_field else "Python cannot compute with"
+        message = f"{where} a {name} of rclpy: write {lacks} behind it"
+        fixes = CodeEdits(source).insert(source.start_offset(end), lacks, f"`{lacks}` is added")
+        yield CodeFault("value-object", message, use.location, fixes=fixes)
