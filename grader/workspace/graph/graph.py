@@ -13,8 +13,9 @@ from grader.ros.nodes.node_facts import EndpointKind
 from grader.ros.package.package import Package
 from grader.workspace.graph.bridge_rows import BridgeRow, bridge_rows
 from grader.workspace.graph.code_ends import End, EndSource
+from grader.workspace.graph.launch_graph import LaunchGraph
 from grader.workspace.graph.node_ends import ends_of
-from grader.workspace.graph.running_nodes import RunningNode, nodes_in
+from grader.workspace.graph.started_graph import started_graph
 from grader.workspace.graph.transform_edges import Edge, edges_in
 from grader.workspace.model.workspace import Workspace
 
@@ -37,12 +38,10 @@ class Graph:
     workspace: Workspace
 
     @cached_property
-    def nodes(self) -> Sequence[RunningNode]:
-        """The nodes that are or may be started, with controllers and components."""
-        nodes: list[RunningNode] = []
-        for launch in range(len(self.workspace.launches.roots)):
-            nodes += nodes_in(self.workspace, launch)
-        return nodes
+    def launched(self) -> Sequence[LaunchGraph]:
+        """What runs after each launch file, with controllers, components and included nodes."""
+        count = len(self.workspace.launches.roots)
+        return [started_graph(self.workspace, number) for number in range(count)]
 
     @cached_property
     def ends(self) -> Sequence[End]:

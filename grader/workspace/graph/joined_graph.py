@@ -1,7 +1,6 @@
 """What runs after launch files are launched together, and what may be asked of it."""
 
 from collections.abc import Collection, Iterator
-from functools import lru_cache
 from typing import NamedTuple
 
 from grader.ros.launch.launch_model import StartedNode
@@ -107,13 +106,8 @@ def join_launches(
     nodes: list[GraphNode] = []
     unread: list[Unread] = []
     for each in launches:
-        graph = _graph_of_launch(*each)
+        graph = started_graph(*each)
         nodes += [node for node in graph.nodes if node.program not in unrun]
         unread += graph.unread
     joined = LaunchGraph("", tuple(nodes), unread=tuple(unread))
     return JoinedGraph(joined, launches, frozenset(unrun))
-
-
-@lru_cache(maxsize=16)
-def _graph_of_launch(workspace: Workspace, number: int) -> LaunchGraph:
-    return started_graph(workspace, number)

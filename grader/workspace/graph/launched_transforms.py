@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 
 from grader.ros.known.end_rows import opened_ends
 from grader.ros.known.package_rows import package_row, transforms_of
-from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.static_transforms import STATIC_PUBLISHER
 from grader.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
 from grader.workspace.graph.code_ends import transforms_sent
@@ -55,7 +55,9 @@ def transforms_in(
                 edge.pose,
                 edge.needs,
             )
-    for node in _launched_nodes(launch, without):
+    for node in launch.nodes:
+        if node.when is False or node.name in without:
+            continue
         yield from _bridged_by_default(workspace, node)
         for facts in workspace.code.nodes_of(node):
             for parent, child, sent in transforms_sent(workspace, node, facts):
@@ -95,15 +97,6 @@ def _topics_of_transforms(workspace: Workspace, node: StartedNode) -> set[str]:
     return {row.gz for row in rows if row.is_published and node.topic(f"/{row.ros}") == _TF}
 
 
-def _launched_nodes(launch: Launch, without: Collection[str]) -> list[StartedNode]:
-    """Return the programs and components that a launch file starts or may start."""
-    nodes = [node for node in launch.nodes if node.when is not False]
-    for component in launch.components:
-        if component.node is not None and component.when is not False:
-            nodes.append(component.node)
-    return [node for node in nodes if node.name not in without]
-
-
 def is_for_transforms(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether a program is known to publish transforms, or does nothing else."""
     program = (node.package, node.executable)
@@ -127,8 +120,10 @@ def unread_transforms(
             yield Unread(f"a frame of {transform.by} is not known", transform.location)
     own_programs = set()
     read_at = {node.location for node in launch.nodes}  # others are included, or components
-    for node in _launched_nodes(launch, without):
+    for node in launch.nodes:
         reason = ""
+        if node.when is False or node.name in without:
+            continue
         if workspace.package_of(node) is not None:
             own_programs.add(node.name)
             reason = _why_own_is_unread(workspace, node)

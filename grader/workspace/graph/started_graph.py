@@ -1,6 +1,7 @@
 """Make the graph of one launch file of a workspace."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from grader.base.errors import NotDecided
@@ -63,6 +64,7 @@ class _Making(NamedTuple):
     release: Release
 
 
+@lru_cache(maxsize=16)
 def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
     """Return what runs after a launch file is launched, by its number among the roots."""
     package, launch = workspace.launches.roots[number]
@@ -70,7 +72,8 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
     nodes: list[GraphNode] = []
     processes: list[EndedProcess] = []
     not_started: list[EndedProcess] = []
-    for process_number, node in enumerate(launch.nodes):
+    programs = [node for node in launch.nodes if not node.is_component]
+    for process_number, node in enumerate(programs):
         process = EndedProcess(node.name, node.location, _doubt_of(node))
         if node.when is False:
             not_started.append(process)
@@ -79,7 +82,7 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
         else:
             for graph_node in _nodes_of_program(making, node):
                 nodes.append(graph_node._replace(process=process_number))
-    nodes += _components(making)
+    nodes += _components(making, {node.location for node in programs})
     nodes += _controllers(making)
     nodes += _included_programs(making, processes)
     nodes += _plugins(making, [*nodes], processes)
@@ -319,12 +322,11 @@ def _bridged_images(node: StartedNode) -> Iterator[GraphEnd]:
             yield GraphEnd("publisher", topic, "sensor_msgs/msg/Image", node.location, note=note)
 
 
-def _components(making: _Making) -> Iterator[GraphNode]:
-    """Yield the containers of a launch file, and the components that it loads."""
+def _components(making: _Making, programs: Collection[Location]) -> Iterator[GraphNode]:
+    """Yield the containers of a launch file that are no programs, and the components it loads."""
     launch = making.launch
-    places = {node.location for node in launch.nodes}
     for container in launch.containers:
-        if container.when is not False and container.location not in places:
+        if container.when is not False and container.location not in programs:
             doubt = "" if container.when else _AT_RUN_TIME
             name, at = container.name or "", container.location
             yield GraphNode(name, "a container", "container", at, (), doubt)
@@ -494,10 +496,9 @@ def _unread(making: _Making) -> Iterator[Unread]:
         yield Unread(launch.syntax.message, launch.syntax.location)
     elif launch.unread:
         yield Unread(launch.unread, _start(launch))
-    places = {container.location for container in launch.containers}
-    places.update(component.loaded_at for component in launch.components)
+    drawn = {component.loaded_at for component in launch.components}
     for unknown in dict.fromkeys(launch.unknown):
-        if unknown.location not in places:
+        if unknown.location not in drawn:
             yield Unread(unknown.message, unknown.location)
     yield from unread_includes(making.workspace, launch)
 

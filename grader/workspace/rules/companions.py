@@ -21,7 +21,7 @@ from grader.ros.launch.launch_model import Launch, PassedArguments, StartedNode
 from grader.ros.urdf.model import Joint
 from grader.workspace.graph.bridge_rows import BRIDGE, are_rows_known, bridge_rows
 from grader.workspace.graph.graph import graph_of
-from grader.workspace.graph.running_nodes import RunningNode
+from grader.workspace.graph.launch_graph import GraphNode
 from grader.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.workspace.graph.unread_ends import may_publish_type
 from grader.workspace.model.launches import CONTROL_NODE, MANAGER
@@ -86,16 +86,23 @@ Node(package='turtlesim', executable='turtlesim_node', name='sim2'),
 
 def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the nodes that a launch file gives a name which it gives another one."""
-    first: dict[tuple[int, str], RunningNode] = {}
-    for node in graph_of(workspace).nodes:
-        process = node.process if node.kind == "program" else None
-        if process is None or not process.node_name or node.when is not True or not node.name:
-            continue
-        before = first.setdefault((node.launch, node.name), node)
-        if before.process is not process:
+    for graph, (_, launch) in zip(
+        graph_of(workspace).launched, workspace.launches.roots, strict=True
+    ):
+        named = {node.location for node in launch.nodes if node.node_name}
+        first: dict[str, GraphNode] = {}
+        for node in graph.nodes:
+            if node.location not in named or node.doubt or not node.name:
+                continue
+            before = first.setdefault(node.name, node)
+            if before is node:
+                continue
+            other = f"the other one is at {before.location.file_and_line}"
+            if node.process is not None and before.process == node.process:
+                other = f"the name is for both nodes of {node.program}"
             message = (
                 f"two nodes are named {node.name}: their parameters and services cannot be told "
-                f"apart; the other one is at {before.location.file_and_line}"
+                f"apart; {other}"
             )
             yield warning(_NODE_NAME, message, node.location, before.location)
 

@@ -190,6 +190,8 @@ def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | N
     if not containers or _may_start_others(workspace, launch):
         return None
     for node in launch.nodes:
+        if node.is_component:
+            continue
         is_named = node.node_name and node.namespace is not None
         may_be = node.package == _CONTAINERS or workspace.package_of(node) is not None
         if may_be and not is_named:
@@ -201,8 +203,6 @@ def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | N
 
 def _may_start_others(workspace: Workspace, launch: Launch) -> bool:
     """Return whether a launch file may start containers that are not known."""
-    places = {container.location for container in launch.containers}
-    places |= {component.loaded_at for component in launch.components}
-    if any(unknown.location not in places for unknown in launch.unknown):
-        return True
-    return not all(workspace.installed.has_file(passed.path) for passed in launch.passed)
+    return bool(launch.unknown) or not all(
+        workspace.installed.has_file(passed.path) for passed in launch.passed
+    )
