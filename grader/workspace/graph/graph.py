@@ -12,7 +12,7 @@ from grader.ros.launch.launch_model import LoadedComponent, ParameterValue, Star
 from grader.ros.nodes.node_facts import EndpointKind
 from grader.ros.package.package import Package
 from grader.workspace.graph.bridge_rows import BridgeRow, bridge_rows
-from grader.workspace.graph.code_ends import End, EndSource
+from grader.workspace.graph.code_ends import END_SOURCES, End, EndSource
 from grader.workspace.graph.launch_graph import LaunchGraph
 from grader.workspace.graph.node_ends import ends_of
 from grader.workspace.graph.started_graph import started_graph
@@ -71,6 +71,29 @@ class Graph:
     def certain(self, kind: EndpointKind, *sources: EndSource) -> list[End]:
         """Return the ends of a kind whose names are known, of nodes that certainly are started."""
         return [end for end in self.of_kind(kind, sources=sources) if end.is_certain]
+
+    def names_opened(self, kind: EndpointKind) -> set[str]:
+        """Return the topics that something opens in one way.
+
+        This includes the rows of bridges that nothing starts.
+        """
+        names = {end.name for end in self.of_kind(kind, sources=END_SOURCES)}
+        for row in bridge_rows(self.workspace):
+            if row.is_published if kind == "publisher" else row.is_read:
+                names.add(f"/{row.ros}")
+        return names
+
+    @cached_property
+    def names_read(self) -> set[str]:
+        """The topics to which code subscribes under the names that it writes, if it is started."""
+        names: set[str] = set()
+        for code in self.workspace.code.by_package.values():
+            for node in code.nodes:
+                self.workspace.charge(1 + len(node.endpoints))
+                for endpoint in node.endpoints:
+                    if endpoint.kind == "subscription" and endpoint.name is not None:
+                        names.add(f"/{endpoint.name.removeprefix('/')}")
+        return names
 
     def pairs(self, asking: Iterable[End], offering: Iterable[End]) -> Iterator[tuple[End, End]]:
         """Yield each end that asks for another one with each that offers it by its name."""

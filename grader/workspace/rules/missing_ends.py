@@ -161,13 +161,16 @@ def _without_subscription(
     the same name may be meant for a controller of Gazebo in another namespace.
     """
     of_code = [end for end in publishers if end.source == "code"]
-    subscribed = {end.name for end in subscriptions}
-    published = {end.name for end in of_code}
+    subscribed = {end.name for end in subscriptions} | graph.names_read
     unheard = [end for end in of_code if end.name not in subscribed]
     named: set[Location] = set()
     for waiting in subscriptions:
-        if waiting.source == "controller" and waiting.name not in published:
-            yield from _meant_for(graph, waiting, unheard, named)
+        launches = {end.launch for end in of_code if end.name == waiting.name}
+        if waiting.source == "controller" and waiting.launch not in launches:
+            meant = unheard
+            if launches:  # a person may start another one, which feeds it
+                meant = [end for end in unheard if closest(end.name, [waiting.name]) is not None]
+            yield from _meant_for(graph, waiting, meant, named)
 
 
 def _meant_for(
