@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from grader.base.names import closest
+from grader.base.names import closest, is_misspelling
 from grader.base.source import Location
 from grader.ros.known.package_rows import package_row
 from grader.ros.known.package_tables import transport_types
@@ -257,10 +257,10 @@ def _partners(
     Another launch file, or a person, may join either one with others.
     """
     asked, offered = asking.end, offering.end
-    is_similar = closest(asked.name, [offered.name]) is not None
-    is_similar = is_similar or _last(asked.name) == _last(offered.name)
-    if _is_of_other_rule(launch, graph, asking, offering, is_similar=is_similar):
+    if _is_of_other_rule(launch, graph, asking, offering):
         return
+    is_similar = is_misspelling(asked.name, offered.name)
+    is_similar = is_similar or _last(asked.name) == _last(offered.name)
     joined = graph_of(workspace)
     is_fed = asked.name in joined.names_opened("publisher") and not is_similar
     if is_fed or offered.name in joined.names_opened("subscription") | joined.names_read:
@@ -286,7 +286,7 @@ def _last(name: str) -> str:
 
 
 def _is_of_other_rule(
-    launch: Launch, graph: LaunchGraph, asking: _FreeEnd, offering: _FreeEnd, *, is_similar: bool
+    launch: Launch, graph: LaunchGraph, asking: _FreeEnd, offering: _FreeEnd
 ) -> bool:
     """Return whether another rule says what is wrong with two ends, or their types differ.
 
@@ -297,6 +297,7 @@ def _is_of_other_rule(
     is_of_type = asked.type == offering.end.type
     if asking.is_own:
         is_compressed = _last(asked.name) in transport_types()
+        is_similar = closest(asked.name, [offering.end.name]) is not None
         is_said = is_compressed or (is_similar and not asking.is_usual) or not is_of_type
     else:
         has_manager = any(node.program == _MANAGER for node in graph.nodes)
