@@ -377,7 +377,7 @@ WRONG: list[tuple[str, list[Edit]]] = [
     ),
     (
         (
-            "REF021 rover/horn.py:9 horn and pilot both publish /drive: the robot obeys each in turn; "
+            "REF021 rover/horn.py:9 /horn and /pilot both publish /drive: the robot obeys each in turn; "
             "twist_mux chooses one"
         ),
         _with(

@@ -13,10 +13,10 @@ from grader.ros.nodes.node_facts import EndpointKind
 from grader.ros.package.package import Package
 from grader.workspace.graph.bridge_rows import BridgeRow, bridge_rows
 from grader.workspace.graph.code_ends import END_SOURCES, End, EndSource
-from grader.workspace.graph.launch_graph import LaunchGraph
+from grader.workspace.graph.launch_graph import GraphTransform, LaunchGraph
 from grader.workspace.graph.node_ends import ends_of
 from grader.workspace.graph.started_graph import started_graph
-from grader.workspace.graph.transform_edges import Edge, edges_in
+from grader.workspace.graph.transform_edges import edges_in
 from grader.workspace.model.workspace import Workspace
 
 _Row = TypeVar("_Row")
@@ -55,9 +55,9 @@ class Graph:
         return ends
 
     @cached_property
-    def edges(self) -> Sequence[Edge]:
+    def edges(self) -> Sequence[GraphTransform]:
         """The transforms of all nodes, whatever conditions say."""
-        edges: list[Edge] = []
+        edges: list[GraphTransform] = []
         for launch in range(len(self.workspace.launches.roots)):
             edges += edges_in(self.workspace, launch)
         return edges

@@ -45,16 +45,7 @@ def transforms_in(
     not_started = {node.location for node in launch.nodes if node.when is False}
     for edge in edges_in(workspace, number):
         if edge.source != "code" and edge.location not in not_started:
-            yield GraphTransform(
-                edge.parent,
-                edge.child,
-                edge.by,
-                edge.location,
-                edge.is_static,
-                edge.is_certain,
-                edge.pose,
-                edge.needs,
-            )
+            yield edge
     for node in launch.nodes:
         if node.when is False or node.name in without:
             continue
@@ -66,10 +57,11 @@ def transforms_in(
                 yield GraphTransform(
                     parent,
                     child,
+                    "code",
+                    is_certain,
                     node.executable,
                     sent.location,
                     sent.is_static,
-                    is_certain,
                     sent.pose,
                 )
 
@@ -86,7 +78,7 @@ def _bridged_by_default(workspace: Workspace, node: StartedNode) -> Iterator[Gra
             if frames is not None:
                 by = f"the system {system_of(plugin)} of Gazebo"
                 is_certain = f"model/{root.get('name')}/tf" in topics and node.when is True
-                yield GraphTransform(*frames, by, place(plugin), is_certain=is_certain)
+                yield GraphTransform(*frames, "Gazebo", is_certain, by, place(plugin))
 
 
 def _topics_of_transforms(workspace: Workspace, node: StartedNode) -> set[str]:
@@ -119,7 +111,7 @@ def unread_transforms(
         if not (transform.parent and transform.child):
             yield Unread(f"a frame of {transform.by} is not known", transform.location)
     own_programs = set()
-    read_at = {node.location for node in launch.nodes}  # others are included, or components
+    read_at = {node.location for node in launch.nodes if not node.is_component}
     for node in launch.nodes:
         reason = ""
         if node.when is False or node.name in without:

@@ -7,22 +7,20 @@ from typing import NamedTuple
 from grader.base.errors import NotDecided
 from grader.base.source import Location
 from grader.ros.known.end_rows import (
-    IncludedNode,
     OnlyMore,
-    launch_file_is_known,
-    nodes_of_launch_file,
     opened_ends,
 )
-from grader.ros.known.package_rows import controller_row, package_row, program_row
+from grader.ros.known.package_rows import controller_row, program_row
 from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import Release
-from grader.ros.launch.launch_model import GivenParameters, Launch, PassedArguments, StartedNode
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters, controllers_of
 from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.workspace.graph.bridge_rows import BRIDGE, are_rows_known, rows_of_bridge
 from grader.workspace.graph.code_ends import opened_by_code
+from grader.workspace.graph.included_nodes import included_nodes, unread_includes
 from grader.workspace.graph.launch_graph import (
     EndedProcess,
     GivenValue,
@@ -418,51 +416,11 @@ def _controller(
 
 def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterator[GraphNode]:
     """Yield the nodes of included launch files of other packages, and add their processes."""
-    for passed in making.launch.passed:
-        package, file = _included_file(passed)
-        if passed.when is False or making.package.find(package) is not None:
-            continue
-        for included in nodes_of_launch_file(package, file, making.release):
-            owner, _, executable = included.node.partition("/")
-            node = StartedNode(
-                owner,
-                executable,
-                None if passed.when is None else True,
-                passed.location,
-                remaps=_remappings_passed(passed, included),
-                node_name=included.name,
-                parameters=_parameters_passed(passed, included.parameters),
-            )
-            if _is_process(node):
-                processes.append(EndedProcess(included.node, node.location, _doubt_of(node)))
-            else:
-                yield from _known_nodes(making, node, "program")
-
-
-def _remappings_passed(
-    passed: PassedArguments, included: IncludedNode
-) -> tuple[tuple[str, str], ...] | None:
-    """Return the remappings of a node; None if an include passes a name that is not known."""
-    values = dict(passed.values)
-    remaps: list[tuple[str, str]] = []
-    for name, default in included.remappings.items():
-        to = values.get(included.arguments.get(name, ""), default)
-        if to is None:
-            return None
-        remaps.append((name, to))
-    return tuple(remaps)
-
-
-def _parameters_passed(
-    passed: PassedArguments, arguments: Sequence[str]
-) -> tuple[GivenParameters, ...] | None:
-    """Return the parameter files that an include passes; None if not all are known."""
-    values = dict(passed.values)
-    paths = [values.get(name) for name in arguments]
-    known = [path for path in paths if path]
-    if not known or len(known) < len(paths):
-        return None
-    return tuple(GivenParameters(passed.location, path) for path in known)
+    for node in included_nodes(making.workspace, making.package, making.launch):
+        if _is_process(node):
+            processes.append(EndedProcess(node.name, node.location, _doubt_of(node)))
+        else:
+            yield from _known_nodes(making, node, "program")
 
 
 def _plugins(
@@ -501,20 +459,3 @@ def _unread(making: _Making) -> Iterator[Unread]:
         if unknown.location not in drawn:
             yield Unread(unknown.message, unknown.location)
     yield from unread_includes(making.workspace, launch)
-
-
-def unread_includes(workspace: Workspace, launch: Launch) -> Iterator[Unread]:
-    """Yield the included launch files of known packages of which it is not known what they open."""
-    own_packages = {package.name for package in workspace.packages}
-    for passed in launch.passed:
-        package, file = _included_file(passed)
-        is_known = launch_file_is_known(package, file) or file not in package_row(package).launch
-        if passed.when is not False and not is_known and package not in own_packages:
-            reason = f"what {file} of {package} starts is not known"
-            yield Unread(reason, passed.location)
-
-
-def _included_file(passed: PassedArguments) -> tuple[str, str]:
-    """Return the package and the name of an included launch file."""
-    package, _, file = passed.path.rpartition("share/")[2].partition("/launch/")
-    return package, file
