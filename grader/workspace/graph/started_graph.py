@@ -253,10 +253,10 @@ def _known_node(
     `given_to` is what has its parameters, if that is in another namespace.
     """
     row = opened_ends(node.package, node.executable)
-    of_program = program_row(node.package, node.executable)
     name = node.node_name
     if name == "":
-        name = (row.name if row is not None else "") or of_program.name
+        in_program = making.workspace.code.name_in_program(node)
+        name = (row.name if row is not None else "") or in_program
     named = node._replace(node_name=name)
     ends: list[GraphEnd] = []
     parameters: list[GivenValue] = []
