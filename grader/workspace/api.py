@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     from grader.workspace.graph.launch_graph import unconnected_ends as unconnected_ends
     from grader.workspace.graph.launch_graphs import launch_files as launch_files
     from grader.workspace.graph.launch_graphs import launch_graph as launch_graph
+    from grader.workspace.graph.lifecycle import LIFECYCLE_MANAGERS as LIFECYCLE_MANAGERS
+    from grader.workspace.graph.lifecycle import are_nodes_activated as are_nodes_activated
+    from grader.workspace.graph.lifecycle import managed_nodes as managed_nodes
     from grader.workspace.graph.lookups import looked_up_transforms as looked_up_transforms
     from grader.workspace.graph.manual_ends import manual_ends as manual_ends
     from grader.workspace.graph.node_ends import opened_by_bridge as opened_by_bridge
@@ -69,6 +72,7 @@ else:
         "GivenValue GraphEnd GraphNode GraphTransform LaunchGraph "
         "Unread connections_in unconnected_ends",
         "graph.launch_graphs": "launch_files launch_graph",
+        "graph.lifecycle": "LIFECYCLE_MANAGERS are_nodes_activated managed_nodes",
         "graph.lookups": "looked_up_transforms",
         "graph.manual_ends": "manual_ends",
         "graph.node_ends": "opened_by_bridge",

@@ -22,7 +22,6 @@ from grader.lab.authoring.facts import (
 )
 from grader.lab.authoring.graph_facts import LaunchConnections
 from grader.lab.checks.parameters import measures
-from grader.lab.checks.started_nodes import LIFECYCLE_MANAGER, managed_nodes
 from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
 from grader.ros.installation.places import PREFIX, is_of_one_machine
@@ -32,7 +31,9 @@ from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.workspace.api import (
+    LIFECYCLE_MANAGERS,
     looked_up_transforms,
+    managed_nodes,
     opened_by_bridge,
     parameter_callbacks,
     spawned_by,
@@ -601,7 +602,7 @@ def _launch_facts(
     needed = connections.needed(launch, started, are_ends_asked=are_ends_asked)
     nodes = [node for node in needed if node not in _STATIC]
     active = _lifecycle_nodes(submission, launch)
-    managers = [node for node in launch.nodes if node.executable == LIFECYCLE_MANAGER]
+    managers = [node for node in launch.nodes if node.executable in LIFECYCLE_MANAGERS]
     managed, _ = managed_nodes(submission.workspace, managers)
     if managed <= {*active}:  # something else may activate own nodes
         programs = {node.name for node in managers}
