@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from grader.workspace.graph.launch_graphs import launch_graph as launch_graph
     from grader.workspace.graph.lifecycle import LIFECYCLE_MANAGERS as LIFECYCLE_MANAGERS
     from grader.workspace.graph.lifecycle import are_nodes_activated as are_nodes_activated
+    from grader.workspace.graph.lifecycle import has_lifecycle as has_lifecycle
     from grader.workspace.graph.lifecycle import managed_nodes as managed_nodes
     from grader.workspace.graph.lookups import looked_up_transforms as looked_up_transforms
     from grader.workspace.graph.manual_ends import manual_ends as manual_ends
@@ -72,7 +73,7 @@ else:
         "GivenValue GraphEnd GraphNode GraphTransform LaunchGraph "
         "Unread connections_in unconnected_ends",
         "graph.launch_graphs": "launch_files launch_graph",
-        "graph.lifecycle": "LIFECYCLE_MANAGERS are_nodes_activated managed_nodes",
+        "graph.lifecycle": "LIFECYCLE_MANAGERS are_nodes_activated has_lifecycle managed_nodes",
         "graph.lookups": "looked_up_transforms",
         "graph.manual_ends": "manual_ends",
         "graph.node_ends": "opened_by_bridge",

@@ -64,4 +64,6 @@ def test_names_that_are_not_known_are_none(tmp_path: Path) -> None:
     ]
     [(node, value)] = graph.given("background_r")
     assert (node.node_name, value.value) == ("other", 1)
-    assert [component.plugin for _, component in graph.components()] == ["image_proc::RectifyNode"]
+    assert [node.program for node in graph.launched[0].nodes][
+        -1
+    ] == "image_proc/image_proc::RectifyNode"

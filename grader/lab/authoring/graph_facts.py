@@ -21,6 +21,7 @@ _OF_COMMANDS = (
     "trajectory_msgs/msg/JointTrajectory",
     "std_msgs/msg/Float64MultiArray",
 )
+_CLOCK = "/clock"  # which says nothing of what a node is for
 # The kinds of ends for which `node_runs` asks.
 _SEEN = ("publisher", "service", "action server", "client", "action client")
 _MAX_WAYS, _MAX_TRANSFORMS = 4, 12  # of one launch file
@@ -47,9 +48,20 @@ class LaunchConnections:
                 title = f"{child!r} is published at {point((*xyz,))} m in {parent!r}"
                 fact = fact._replace(arguments=placed, title=title, otherwise=(fact,))
             yield fact
-        for start, end in list(self._ways())[:_MAX_WAYS]:
+        ways = list(self._ways())[:_MAX_WAYS]
+        for start, end in ways:
             fact = self._fact("connects", f"{start} {end}", **{"from": start, "to": end})
-            yield fact._replace(title=f"messages find a way from {start} to {end}")
+            fact = fact._replace(title=f"messages find a way from {start} to {end}")
+            if self._is_obeyed(end):
+                arguments = {**fact.arguments, "read": True}
+                title = f"messages find a way from {start} to what reads {end}"
+                fact = fact._replace(arguments=arguments, title=title)
+            yield fact
+        arrived = {end for _, end in ways}
+        for topic in [each for each in self._commands() if each not in arrived]:
+            arguments = {"from": topic, "to": topic, "read": True}
+            fact = self._fact("connects", topic, **arguments)
+            yield fact._replace(title=f"what is published on {topic} is read")
 
     def needed(self, launch: Launch, nodes: Sequence[str], *, are_ends_asked: bool) -> list[str]:
         """Return the nodes that are needed for more than what other facts ask for.
@@ -102,6 +114,21 @@ class LaunchConnections:
                 by_frames.setdefault((transform.parent, transform.child), transform)
         yield from by_frames.values()
 
+    def _is_obeyed(self, topic: str) -> bool:
+        """Return whether a node of another package certainly reads what is published."""
+        reader = self._graph.find_reader(topic)
+        return reader is not None and not self._is_own(reader.node)
+
+    def _commands(self) -> Iterator[str]:
+        """Yield the topics of commands of own nodes that nodes of other packages obey."""
+        sent: list[GraphEnd] = []
+        for node in self._graph.graph.nodes:
+            if self._is_own(node):
+                sent += [end for end in node.ends if end.type.startswith(_OF_COMMANDS)]
+        for topic in _topics(sent, "publisher"):
+            if self._is_obeyed(topic):
+                yield topic
+
     def _ways(self) -> Iterator[tuple[str, str]]:
         """Yield the topics between which own nodes take messages from other nodes to other ones."""
         nodes = self._graph.graph.nodes
@@ -118,9 +145,10 @@ class LaunchConnections:
 
         Also those of sensors and commands, whose other nodes may be on the robot.
         """
-        own_ends = [
-            end for node in nodes if self._is_own(node) for end in node.ends if not end.doubt
-        ]
+        own_ends: list[GraphEnd] = []
+        for node in nodes:
+            if self._is_own(node):
+                own_ends += [end for end in node.ends if not end.doubt and end.name != _CLOCK]
         others = [end for node in nodes if not self._is_own(node) for end in node.ends]
         read, sent = _topics(own_ends, "subscription"), _topics(own_ends, "publisher")
         read_by_others = _topics(others, "subscription")

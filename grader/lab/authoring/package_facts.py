@@ -22,7 +22,6 @@ from grader.lab.authoring.facts import (
 )
 from grader.lab.authoring.graph_facts import LaunchConnections
 from grader.lab.checks.parameters import measures
-from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
 from grader.ros.installation.places import PREFIX, is_of_one_machine
 from grader.ros.launch.launch_model import Launch, StartedNode
@@ -32,6 +31,7 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.workspace.api import (
     LIFECYCLE_MANAGERS,
+    has_lifecycle,
     looked_up_transforms,
     managed_nodes,
     opened_by_bridge,
@@ -629,12 +629,11 @@ def _launch_facts(
 
 def _lifecycle_nodes(submission: Submission, launch: Launch) -> list[str]:
     """Return the names of the own nodes with a lifecycle that a launch file starts."""
-    code, names = submission.workspace.code, []
+    workspace, names = submission.workspace, []
     for node in launch.nodes:
-        facts = code.own_node(node) if node.when else None
-        data = content(submission, facts.location.path) if facts is not None else None
-        name = code.name_of(node)
-        if data is not None and name and b"LifecycleNode" in data:
+        is_own = node.when and workspace.package_of(node) is not None
+        name = workspace.code.name_of(node)
+        if is_own and name and has_lifecycle(workspace, node):
             names.append(name)
     return names
 

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TypeVar
 
-from grader.ros.launch.launch_model import LoadedComponent, ParameterValue, StartedNode
+from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.nodes.node_facts import EndpointKind
-from grader.ros.package.package import Package
 from grader.workspace.graph.bridge_rows import BridgeRow, bridge_rows
 from grader.workspace.graph.code_ends import END_SOURCES, End, EndSource
 from grader.workspace.graph.launch_graph import GraphTransform, LaunchGraph
@@ -122,13 +121,6 @@ class Graph:
             for end in others:
                 if row.is_published if end.kind == "subscription" else row.is_read:
                     yield end, row
-
-    def components(self) -> Iterator[tuple[Package, LoadedComponent]]:
-        """Yield the components that launch files load, each with the package of its launch file."""
-        for package, launch in self.workspace.launches.roots:
-            self.workspace.charge(1 + len(launch.components))
-            for component in launch.components:
-                yield package, component
 
     def given(self, parameter: str) -> Iterator[tuple[StartedNode, ParameterValue]]:
         """Yield the nodes that are given a parameter of a name, each with its value."""

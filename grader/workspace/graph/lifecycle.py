@@ -61,7 +61,7 @@ def has_lifecycle(workspace: Workspace, node: StartedNode) -> bool:
     if facts is not None:
         data = workspace.tree.read(facts.location.path, MAX_YAML) or b""
         name = re.escape(facts.class_name.rpartition("::")[2].rpartition(".")[2])
-        bases = re.search(rf"class\s++{name}\b([^\n{{]*+)", data.decode(errors="replace"))
+        bases = re.search(rf"class\s++{name}\b([^{{]{{0,120}}+)", data.decode(errors="replace"))
         return bases is not None and "LifecycleNode" in bases[1]
     for release in workspace.releases or RELEASES:
         if not any(row_for(node.name, parameter, release) for parameter in _OF_MANAGED):

@@ -8,6 +8,7 @@ from grader.base.errors import NotDecided
 from grader.base.source import Location
 from grader.ros.known.end_rows import (
     OnlyMore,
+    OpenedEnds,
     opened_ends,
 )
 from grader.ros.known.package_rows import controller_row, program_row
@@ -15,7 +16,7 @@ from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters, controllers_of
-from grader.ros.nodes.node_facts import NodeFacts
+from grader.ros.nodes.node_facts import NodeFacts, Qos
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.workspace.graph.bridge_rows import BRIDGE, are_rows_known, rows_of_bridge
@@ -49,6 +50,8 @@ _RVIZ, _IMAGE_BRIDGE = "rviz2", "image_bridge"
 _AT_RUN_TIME = "whether it is started is known only at run time"
 _HIDDEN = frozenset({"/rosout", "/parameter_events", "/tf", "/tf_static"})
 _GAZEBO_CLASSIC, _SPAWN = ("gazebo", "gzserver"), "gazebo_ros/spawn_entity.py"
+_NO_RELEASE = "the release of ROS 2, on which it depends, is not stated"
+_USUAL_RELEASES: tuple[Release, ...] = ("humble", "jazzy")
 _TOO_MUCH = "reading it takes more work than one workspace may use"
 
 
@@ -173,6 +176,7 @@ def _own_node(
         if opens_more and row is not None:  # a well-known program whose sources are here
             named = node._replace(node_name=name)
             ends += ends_of_row(row, named, given, making.release)
+        ends += _clock_read(given)
         defaults = {each.name: each.default for each in facts.parameters if each.is_declared}
         parameters += _different(given, defaults)
     except NotDecided:
@@ -273,6 +277,7 @@ def _known_node(
         if node.executable == _RVIZ:
             ends = _ends_of_rviz(making, named) or ends
         ends += _ends_for_rules(making, named)
+        ends += _clock_read(given)
         defaults: dict[str | None, object] = {}
         for parameter in given.values:
             parameter_row = row_for(node.name, parameter, making.release)
@@ -285,6 +290,14 @@ def _known_node(
         opens_more, only = _TOO_MUCH, ""
     made = _graph_node(node, name, kind, inside)._replace(opens_more=opens_more, opens_only=only)
     return made._replace(ends=_shown(ends), parameters=tuple(parameters))
+
+
+def _clock_read(given: NodeParameters) -> Iterator[GraphEnd]:
+    """Yield the clock that a node subscribes to which uses simulated time: time_source.cpp."""
+    used = given.values.get("use_sim_time")
+    if used is not None and used.value is True:
+        qos = Qos(1, "best_effort", "volatile")
+        yield GraphEnd("subscription", "/clock", "rosgraph_msgs/msg/Clock", used.location, qos)
 
 
 def _ends_for_rules(making: _Making, node: StartedNode) -> Iterator[GraphEnd]:
@@ -408,10 +421,22 @@ def _controller(
     only: OnlyMore = ""
     if row is not None:
         located = node._replace(location=controller.location)
-        ends = _shown([*ends_of_row(row, located, given, making.release)])
+        ends = _shown([*_ends_of_controller(making, row, located, given)])
         opens_more, only = row.opens_more, row.opens_only
     at, shown = controller.location, tuple(ends)
     return GraphNode(name, kind, "controller", at, shown, doubt, opens_more, (), inside, only)
+
+
+def _ends_of_controller(
+    making: _Making, row: OpenedEnds, node: StartedNode, given: NodeParameters
+) -> Iterator[GraphEnd]:
+    """Yield what a controller opens; if no release is stated, what depends on it is not certain."""
+    others: list[set[GraphEnd]] = []
+    for release in () if making.workspace.releases else _USUAL_RELEASES:
+        others.append({*ends_of_row(row, node, given, release)})
+    for end in ends_of_row(row, node, given, making.release):
+        is_certain = all(end in ends for ends in others)
+        yield end if is_certain else end._replace(doubt=end.doubt or _NO_RELEASE)
 
 
 def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterator[GraphNode]:

@@ -41,6 +41,7 @@ _LOOSE = (*_PAGES, ".rst", ".txt", ".yaml", ".yml", "Dockerfile")  # outside of 
 _SOURCES = (*_CODE, *_PAGES, ".yaml")
 # Launch files that start Gazebo or a part of it, and no bridge.
 _OF_GAZEBO = ("gz_sim.launch.py", "gz_server.launch.py", "gz_spawn_model.launch.py")
+_GAZEBO = ("gz sim", "ign gazebo")  # processes that open no topic of ROS
 _BRIDGES = (BRIDGE, "ros_ign_bridge")
 _WORD = re.compile(r"[a-z0-9]+")
 
@@ -299,9 +300,12 @@ def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
 
 
 def _sim_time(workspace: Workspace) -> Iterator[Location]:
-    """Yield where nodes that are started are told to use the time of a simulation."""
+    """Yield where nodes that are started are told to use the time of a simulation.
+
+    robot_state_publisher sends what it gets, whatever the time is.
+    """
     for node, value in graph_of(workspace).given(_TIME):
-        if node.when is True and value.value is True:
+        if node.when is True and value.value is True and node.executable != _ROBOT_PUBLISHER:
             yield value.location
 
 
@@ -349,10 +353,13 @@ def _may_have_clock(workspace: Workspace) -> bool:
 
 
 def _starts_gazebo(workspace: Workspace) -> bool:
-    """Return whether a launch file starts Gazebo by a file that starts nothing else."""
-    return any(
-        _is_of_gazebo(passed) for _, launch in workspace.launches.roots for passed in launch.passed
-    )
+    """Return whether a launch file starts Gazebo by a command, or a file that starts no more."""
+    for _, launch in workspace.launches.roots:
+        if any(command.startswith(_GAZEBO) for command in launch.commands):
+            return True
+        if any(map(_is_of_gazebo, launch.passed)):
+            return True
+    return False
 
 
 def _is_of_gazebo(passed: PassedArguments) -> bool:
@@ -376,7 +383,7 @@ def _may_bridge_clock(workspace: Workspace) -> bool:
 
 def _may_start_clock(workspace: Workspace, launch: Launch) -> bool:
     """Return whether a command or an included launch file may start a simulation."""
-    ending = (*ros_machine().ending_commands, *commands_that_end())
+    ending = (*ros_machine().ending_commands, *commands_that_end(), *_GAZEBO)
     if not all(command.startswith(ending) for command in launch.commands):
         return True
     for passed in launch.passed:

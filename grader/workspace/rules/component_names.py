@@ -12,7 +12,6 @@ from grader.base.text import quoted
 from grader.ros.installation.installation import Installation
 from grader.ros.launch.launch_model import Launch, LoadedComponent
 from grader.ros.package.package import Package
-from grader.workspace.graph.graph import graph_of
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
@@ -39,9 +38,10 @@ _OTHER_WAY = "ament_index_register_resource"
 
 def component_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield components that nothing registers, and containers that nothing starts."""
-    for package, component in graph_of(workspace).components():
-        yield from _unregistered(workspace, package, component)
-    for _, launch in workspace.launches.roots:
+    for package, launch in workspace.launches.roots:
+        workspace.charge(1 + len(launch.components))
+        for component in launch.components:
+            yield from _unregistered(workspace, package, component)
         yield from _no_container(workspace, launch)
 
 
