@@ -145,10 +145,9 @@ class LaunchConnections:
 
         Also those of sensors and commands, whose other nodes may be on the robot.
         """
-        own_ends: list[GraphEnd] = []
-        for node in nodes:
-            if self._is_own(node):
-                own_ends += [end for end in node.ends if not end.doubt and end.name != _CLOCK]
+        own_ends = [
+            end for node in nodes if self._is_own(node) for end in node.ends if not end.doubt
+        ]
         others = [end for node in nodes if not self._is_own(node) for end in node.ends]
         read, sent = _topics(own_ends, "subscription"), _topics(own_ends, "publisher")
         read_by_others = _topics(others, "subscription")
@@ -178,6 +177,6 @@ def _topics(ends: Iterable[GraphEnd], kind: str) -> dict[str, str]:
     """Return the topics of the ends of a kind, each with its first type."""
     topics: dict[str, str] = {}
     for end in ends:
-        if end.kind == kind:
+        if end.kind == kind and end.name != _CLOCK:
             topics.setdefault(end.name, end.type)
     return topics

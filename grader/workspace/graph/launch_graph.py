@@ -16,7 +16,7 @@ from grader.ros.nodes.node_facts import EndpointKind, Qos
 GraphNodeKind = Literal["program", "component", "container", "controller"]
 GRAPH_NODE_KINDS: tuple[GraphNodeKind, ...] = get_args(GraphNodeKind)
 _ConnectionKind = Literal["topic", "service", "action"]
-TransformSource = Literal["robot", "static", "code", "program", "controller", "Gazebo"]
+_TransformSource = Literal["robot", "static", "code", "program", "controller", "Gazebo"]
 CONNECTION_KINDS: tuple[_ConnectionKind, ...] = get_args(_ConnectionKind)
 _OFFERS: Mapping[EndpointKind, EndpointKind] = {
     "publisher": "subscription",
@@ -115,7 +115,7 @@ class GraphTransform(NamedTuple):
 
     parent: str
     child: str
-    source: TransformSource
+    source: _TransformSource
     is_certain: bool
     by: str
     location: Location

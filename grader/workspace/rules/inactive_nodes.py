@@ -46,28 +46,38 @@ def inactive_node_facts(workspace: Workspace) -> Iterator[Fact]:
     nodes = [pair for pair in workspace.launches.nodes if has_lifecycle(workspace, pair[1])]
     if not nodes or are_nodes_activated(workspace) is not False:
         return
-    managed: set[str] = set()
-    has_manager = False
-    for package, node in workspace.launches.nodes:
-        if node.executable in LIFECYCLE_MANAGERS:
-            has_manager = True
-            given = workspace.parameters.given_to(package, node)
-            names = given.values.get("node_names")
-            if given.unknown or names is None or not isinstance(names.value, list):
-                return
-            managed.update(str(name).rpartition("/")[2] for name in names.value)
-    for graph in graph_of(workspace).launched:
-        if graph.unread or any(process.program.startswith("ros2 ") for process in graph.processes):
-            return
+    managed = _managed_names(workspace)
+    if managed is None or _may_start_others(workspace):
+        return
     for package, node in nodes:
         name = workspace.code.name_of(node)
         given = workspace.parameters.given_to(package, node)
-        starts = given.values.get(_STARTS_ITSELF)
-        is_open = given.unknown or name is None or starts is not None
-        is_open = is_open or not (has_manager or workspace.package_of(node) is None)
-        if node.when is True and not is_open and name not in managed:
+        is_open = given.unknown or name is None or _STARTS_ITSELF in given.values
+        is_of_person = not managed and workspace.package_of(node) is not None
+        if node.when is True and not (is_open or is_of_person) and name not in managed:
             message = (
                 f"nothing configures and activates the lifecycle node {name}: name it in "
                 "node_names of a lifecycle manager"
             )
             yield warning(_NODE_ACTIVATED, message, node.location)
+
+
+def _managed_names(workspace: Workspace) -> set[str] | None:
+    """Return the names of the nodes that managers lead; None where not all are known."""
+    managed: set[str] = set()
+    for package, node in workspace.launches.nodes:
+        if node.executable in LIFECYCLE_MANAGERS:
+            given = workspace.parameters.given_to(package, node)
+            names = given.values.get("node_names")
+            if given.unknown or names is None or not isinstance(names.value, list):
+                return None
+            managed.update(str(name).rpartition("/")[2] for name in names.value)
+    return managed
+
+
+def _may_start_others(workspace: Workspace) -> bool:
+    """Return whether a launch starts what is not read, or a command of ROS 2."""
+    for graph in graph_of(workspace).launched:
+        if graph.unread or any(process.program.startswith("ros2 ") for process in graph.processes):
+            return True
+    return False

@@ -116,13 +116,9 @@ def _owned_twice(edges: Sequence[GraphTransform]) -> Iterator[Mismatch]:
     first: dict[str, GraphTransform] = {}
     for edge in edges:
         before = first.setdefault(edge.child, edge)
-        is_same = before.parent == edge.parent
-        is_one = before.location == edge.location or (
-            edge.source == "code" and before.by == edge.by
-        )
-        if is_one or (is_same and before.is_static and edge.is_static):
+        if _are_one(before, edge):
             continue
-        if is_same:
+        if before.parent == edge.parent:
             message = (
                 f"{edge.by} publishes the transform from {quoted(edge.parent)} to "
                 f"{quoted(edge.child)}, and so does {before.by} ({before.location.file_and_line})"
@@ -134,6 +130,13 @@ def _owned_twice(edges: Sequence[GraphTransform]) -> Iterator[Mismatch]:
                 "frame has one parent"
             )
         yield warning(_TRANSFORM_OWNER, message, edge.location, before.location)
+
+
+def _are_one(one: GraphTransform, other: GraphTransform) -> bool:
+    """Return whether two transforms are of one program, or static ones of one pair of frames."""
+    if one.location == other.location or (other.source == "code" and one.by == other.by):
+        return True
+    return one.parent == other.parent and one.is_static and other.is_static
 
 
 def _children_of_robot(
