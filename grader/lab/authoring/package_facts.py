@@ -139,7 +139,7 @@ def package_facts(submission: Submission) -> Facts:
     agreement = read_agreement(submission.workspace) if submission.lab_packages else None
     named = agreement.files if agreement is not None and agreement.holds("files") else frozenset()
     for package, prefix in _packages(submission):
-        facts = _facts_of(submission, package, named, prefix)
+        facts = _list_package_facts(submission, package, named, prefix)
         about = f"{_THE_PACKAGE} {package.name}" if prefix else _THE_PACKAGE
         of = package.name if prefix else ""
         for fact in facts:
@@ -255,15 +255,15 @@ def _changed_by_passing(submission: Submission, launch: Launch) -> Iterator[tupl
         if not passed.when or not passed.values or passed.path not in own_files:
             continue
         package, path = own_files[passed.path]
-        defaults = [_parameters_of(node) for node in package.launch(path).nodes]
+        defaults = [_list_parameters(node) for node in package.launch(path).nodes]
         for node in launch.nodes:
             if node.included_by and node.location.path == package.path(path):
-                for name, value in _parameters_of(node).items():
+                for name, value in _list_parameters(node).items():
                     if not any(repr(each.get(name)) == repr(value) for each in defaults):
                         yield name, value
 
 
-def _parameters_of(node: StartedNode) -> dict[str, Any]:
+def _list_parameters(node: StartedNode) -> dict[str, Any]:
     """Return the values that a launch file itself gives the parameters of a node."""
     values: dict[str, Any] = {}
     for given in node.parameters or ():
@@ -306,7 +306,7 @@ def _builds(submission: Submission) -> tuple[str, ...]:
     return tuple(f"{prefix}setup_imports" for _, prefix in _packages(submission))
 
 
-def _facts_of(
+def _list_package_facts(
     submission: Submission, package: Package, named: Collection[str], prefix: str
 ) -> Iterator[Fact]:
     """Yield what may be true of a package.
@@ -631,8 +631,8 @@ def _lifecycle_nodes(submission: Submission, launch: Launch) -> list[str]:
     """Return the names of the own nodes with a lifecycle that a launch file starts."""
     workspace, names = submission.workspace, []
     for node in launch.nodes:
-        is_own = node.when and workspace.package_of(node) is not None
-        name = workspace.code.name_of(node)
+        is_own = node.when and workspace.find_package(node) is not None
+        name = workspace.code.find_name(node)
         if is_own and name and has_lifecycle(workspace, node):
             names.append(name)
     return names

@@ -124,10 +124,10 @@ def _value_or_default(
 ) -> tuple[str, ParameterValue]:
     """Return the value that a node gets, or else its default, after the words for that.
 
-    Raises MissingElement and NotDecided, as `value_of` does.
+    Raises MissingElement and NotDecided, as `find_value` does.
     """
     try:
-        return f"{quoted(node)} gets {parameter} =", value_of(submission, node, parameter)
+        return f"{quoted(node)} gets {parameter} =", find_value(submission, node, parameter)
     except MissingElement:
         default = submission.default_value(node, parameter) if or_default else None
         if default is None:
@@ -161,7 +161,7 @@ def _written_otherwise(
     return None if has_it else next(iter(known), None)
 
 
-def value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
+def find_value(submission: Submission, node: str, parameter: str) -> ParameterValue:
     """Return the value that a node gets.
 
     Raises MissingElement if it gets none, NotDecided where that is not known.
@@ -196,8 +196,8 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
 def _explain_nothing_given(workspace: Workspace, node: str) -> NotDecided | MissingElement:
     """Return the error of a node that nothing gives parameters to."""
     for _, other in workspace.launches.nodes:
-        is_own = workspace.package_of(other) is not None
-        if (is_own or other.parameters) and workspace.code.name_of(other) is None:
+        is_own = workspace.find_package(other) is not None
+        if (is_own or other.parameters) and workspace.code.find_name(other) is None:
             cause = "the name of a node is only in its program"
             return NotDecided(f"{cause}: {other.package}/{other.executable}", cause)
     there = similar_there(node, workspace.parameters.owners)

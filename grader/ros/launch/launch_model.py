@@ -146,7 +146,7 @@ class Context:
         """Return a context whose launch configurations change on their own."""
         return replace(self, arguments=dict(self.arguments), to_all=dict(self.to_all))
 
-    def text_of(self, path: str) -> str | None:
+    def find_text(self, path: str) -> str | None:
         """Return the text of a file.
 
         Returns None for one that is not installed below the prefix, or is no text.
@@ -413,7 +413,7 @@ class Launch(NamedTuple):
         doubts = tuple(row for row in self.doubts if row.location not in known_at)
         return self._replace(nodes=(*self.nodes, *nodes), unknown=unknown, doubts=doubts)
 
-    def frames_of(self, link: str) -> tuple[str | None, ...]:
+    def list_frames(self, link: str) -> tuple[str | None, ...]:
         """Return the frames of a link that robot_state_publisher publishes.
 
         A rubric may prefix them. Returns None if they are unknown.

@@ -23,7 +23,7 @@ class RobotState(NamedTuple):
         return self.refusals, self.dropped
 
 
-def state_of(reading: "Reading") -> RobotState:
+def make_state(reading: "Reading") -> RobotState:
     """Return what a reading is compared by."""
     kinds = [problem.kind for problem in reading.problems if not problem.kind.is_consequence]
     refusals = [kind for kind in kinds if kind.effect == "rejects"]

@@ -23,6 +23,6 @@ def _read(data: bytes, path: str, budget: Budget) -> XacroNode | None:
         return recovered_nodes(data, path, budget)[0]
 
 
-def place_of(node: XacroNode) -> tuple[Source, int]:
+def find_place(node: XacroNode) -> tuple[Source, int]:
     """Return the text that an element is written in, and the offset of its start tag."""
     return node.place.source.element(node.place.tag)

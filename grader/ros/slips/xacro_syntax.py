@@ -8,7 +8,7 @@ from grader.base.markup import WORD_OF_VALUE
 from grader.base.slips import Slip
 from grader.base.source import Source
 from grader.base.text import cut
-from grader.ros.slips.nodes import place_of
+from grader.ros.slips.nodes import find_place
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 from grader.ros.xml.urdf_format import PARTS
 
@@ -53,7 +53,7 @@ def expression_slips(root: XacroNode, names: set[str]) -> Iterator[tuple[Slip, .
     Of each, yield all ways to read it. `names` are those of properties and parameters.
     """
     for node in walk(root):
-        source, start = place_of(node)
+        source, start = find_place(node)
         for attribute in markup.attributes(source.text, start):
             text = source.text[slice(*attribute.value)]
             if len(text) > _MAX_LENGTH:

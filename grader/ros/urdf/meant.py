@@ -100,7 +100,7 @@ def read_as_meant(
             undone += words
             robot, problems = read()
             if "rejects" not in problems.effects:
-                words = [word._replace(fixes=_fixes_of(word, problems)) for word in undone]
+                words = [word._replace(fixes=_make_fixes(word, problems)) for word in undone]
                 for word in words:
                     problems.undone = {**problems.undone, word.place: word.fixes}
                     problems.listed.append(problems.assumed(*word.place, word.sentence, word.fixes))
@@ -111,11 +111,11 @@ def read_as_meant(
             _rewrite_element(element, tag, attributes)
 
 
-def _fixes_of(word: Word, problems: Problems) -> Fixes:
-    return Fixes(lambda: [Fix(edits, word.sentence) for edits in _edits_of(word, problems)])
+def _make_fixes(word: Word, problems: Problems) -> Fixes:
+    return Fixes(lambda: [Fix(edits, word.sentence) for edits in _make_edits(word, problems)])
 
 
-def _edits_of(word: Word, problems: Problems) -> Iterator[Edits]:
+def _make_edits(word: Word, problems: Problems) -> Iterator[Edits]:
     """Yield the edits of a word, if they change the text.
 
     The word is a tag, the name of an attribute, or its value.
@@ -357,11 +357,11 @@ def _repeated_names(root: Element) -> Iterator[Word]:
     ends = [end for end in root.iterfind("joint/*") if end.tag in ("parent", "child")]
     used_links = dict.fromkeys(end.get("link") for end in ends)
     used_joints = dict.fromkeys(mimic.get("joint") for mimic in root.iterfind("joint/mimic"))
-    yield from _repeated_names_of(root, "link", used_links)
-    yield from _repeated_names_of(root, "joint", used_joints)
+    yield from _find_repeated(root, "link", used_links)
+    yield from _find_repeated(root, "joint", used_joints)
 
 
-def _repeated_names_of(root: Element, tag: str, used: Iterable[str | None]) -> Iterator[Word]:
+def _find_repeated(root: Element, tag: str, used: Iterable[str | None]) -> Iterator[Word]:
     by_name: dict[str | None, list[Element]] = {}
     for element in root.iterchildren(tag):
         by_name.setdefault(element.get("name"), []).append(element)

@@ -383,11 +383,11 @@ def _correction(
 ) -> XacroCorrection:
     """Return a correction that is where the first edit is."""
     at = Location(edits[0].path, edits[0].line, edits[0].column)
-    fix = Fix(edits, sentence_of(edits))
+    fix = Fix(edits, describe_edits(edits))
     return XacroCorrection(fix, location if location[:3] == at[:3] else at, is_of_element)
 
 
-def sentence_of(edits: Edits) -> str:
+def describe_edits(edits: Edits) -> str:
     """Return what is read as what after some edits."""
     shown = [
         f"{cut(edit.old, _MAX_SHOWN)} is read as {cut(edit.new, _MAX_SHOWN)}" for edit in edits[:3]

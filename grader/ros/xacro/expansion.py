@@ -20,7 +20,7 @@ from grader.base.source import Edit, Edits, Location, Source
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.values import EvaluationFails, Undetermined
 from grader.ros.xacro import xacro_problems
-from grader.ros.xacro.corrections import Corrections, Refusal, XacroCorrection, sentence_of
+from grader.ros.xacro.corrections import Corrections, Refusal, XacroCorrection, describe_edits
 from grader.ros.xacro.expander import STOPS, Expander, UndeterminedUse
 from grader.ros.xacro.tags import CALL, HANDLERS
 from grader.ros.xacro.texts import OtherArguments, Texts
@@ -246,7 +246,7 @@ def expand(
     meant = expansion
     corrected, assumed = dict.fromkeys(edits), dict[str, Problem]()
     if edits:
-        fix, first = Fix(edits, sentence_of(edits)), edits[0]
+        fix, first = Fix(edits, describe_edits(edits)), edits[0]
         at = Location(first.path, first.line, first.column)
         fixes = Fixes(lambda: [fix])
         assumed[fix.assumption] = Problem(RECOVERED, fix.assumption, at, fixes=fixes)

@@ -11,13 +11,13 @@ from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import GivenParameters, Launch, PassedArguments, StartedNode
 from grader.ros.package.package import Package
 from grader.workspace.graph.launch_graph import Unread
-from grader.workspace.graph.opened_by_programs import release_of
+from grader.workspace.graph.opened_by_programs import last_release
 from grader.workspace.model.workspace import Workspace
 
 
 def included_nodes(workspace: Workspace, package: Package, launch: Launch) -> Iterator[StartedNode]:
     """Yield the nodes that included launch files of other packages start, as far as is known."""
-    release = release_of(workspace)
+    release = last_release(workspace)
     for passed in launch.passed:
         owner, file = _included_file(passed)
         if passed.when is False or package.find(owner) is not None:

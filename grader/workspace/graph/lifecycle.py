@@ -29,7 +29,7 @@ def are_nodes_activated(workspace: Workspace) -> bool | None:
     """Return whether launch files or code activate nodes; None where a command may do it."""
     texts = [*workspace.texts.launch_texts]
     for package in workspace.packages:
-        sources = workspace.texts.sources_of(package, _CODE)
+        sources = workspace.texts.read_sources(package, _CODE)
         texts += [source.text for source in sources]
     if any(_ACTIVATES.search(text) for text in texts):
         return True

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from grader.base.errors import NotDecided
-from grader.workspace.graph.graph import graph_of
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.index.written_names import WrittenName
 from grader.workspace.model.workspace import Workspace
 
@@ -11,7 +11,7 @@ _MAX_ENDS = 10
 _MAX_FIELDS = 20
 
 
-def texts_of(workspace: Workspace, name: WrittenName) -> Iterator[str]:
+def list_texts(workspace: Workspace, name: WrittenName) -> Iterator[str]:
     """Yield what is known of a topic, service, action or type of messages, a fact each."""
     if name.kind in ("topic", "service", "action"):
         rows: dict[str, None] = {}
@@ -26,7 +26,7 @@ def texts_of(workspace: Workspace, name: WrittenName) -> Iterator[str]:
 
 def _ends(workspace: Workspace, full: str) -> Iterator[str]:
     """Yield the nodes that have an end of a full name after a launch."""
-    for graph in graph_of(workspace).launched:
+    for graph in make_graph(workspace).launched:
         for node in graph.nodes:
             for end in node.ends:
                 if end.name == full:

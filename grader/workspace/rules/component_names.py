@@ -62,7 +62,7 @@ def _unregistered(
         return
     yield Compared("programs")
     registered = _registered_in(setup)
-    texts = [source.text for source in workspace.texts.sources_of(owner, _CMAKE)]
+    texts = [source.text for source in workspace.texts.read_sources(owner, _CMAKE)]
     if plugin in registered or any(plugin in text for text in texts):
         return
     workspace.charge(cost_of_guess(len(registered)))
@@ -193,7 +193,7 @@ def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | N
         if node.is_component:
             continue
         is_named = node.node_name and node.namespace is not None
-        may_be = node.package == _CONTAINERS or workspace.package_of(node) is not None
+        may_be = node.package == _CONTAINERS or workspace.find_package(node) is not None
         if may_be and not is_named:
             return None
         if node.node_name:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from grader.workspace.graph.graph import graph_of
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.graph.lifecycle import (
     LIFECYCLE_MANAGERS,
     are_nodes_activated,
@@ -50,10 +50,10 @@ def inactive_node_facts(workspace: Workspace) -> Iterator[Fact]:
     if managed is None or _may_start_others(workspace):
         return
     for package, node in nodes:
-        name = workspace.code.name_of(node)
+        name = workspace.code.find_name(node)
         given = workspace.parameters.given_to(package, node)
         is_open = given.unknown or name is None or _STARTS_ITSELF in given.values
-        is_of_person = not managed and workspace.package_of(node) is not None
+        is_of_person = not managed and workspace.find_package(node) is not None
         if node.when is True and not (is_open or is_of_person) and name not in managed:
             message = (
                 f"nothing configures and activates the lifecycle node {name}: name it in "
@@ -77,7 +77,7 @@ def _managed_names(workspace: Workspace) -> set[str] | None:
 
 def _may_start_others(workspace: Workspace) -> bool:
     """Return whether a launch starts what is not read, or a command of ROS 2."""
-    for graph in graph_of(workspace).launched:
+    for graph in make_graph(workspace).launched:
         if graph.unread or any(process.program.startswith("ros2 ") for process in graph.processes):
             return True
     return False

@@ -15,7 +15,7 @@ from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import Launch
 from grader.ros.nodes.node_facts import Endpoint, EndpointKind
 from grader.workspace.graph.bridge_rows import BRIDGE
-from grader.workspace.graph.graph import graph_of
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.graph.launch_graph import OPPOSITES, GraphEnd, GraphNode, LaunchGraph
 from grader.workspace.graph.manual_ends import manual_ends
 from grader.workspace.graph.message_ways import is_named, may_open
@@ -46,7 +46,7 @@ def unmet_topic_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the topics that connect nothing."""
     yield from _of_unstarted(workspace)
     for graph, (_, launch) in zip(
-        graph_of(workspace).launched, workspace.launches.roots, strict=True
+        make_graph(workspace).launched, workspace.launches.roots, strict=True
     ):
         yield from _of_one_launch(workspace, graph, launch)
 
@@ -261,7 +261,7 @@ def _partners(
         return
     is_similar = is_misspelling(asked.name, offered.name)
     is_similar = is_similar or _last(asked.name) == _last(offered.name)
-    joined = graph_of(workspace)
+    joined = make_graph(workspace)
     is_fed = asked.name in joined.names_opened("publisher") and not is_similar
     if is_fed or offered.name in joined.names_opened("subscription") | joined.names_read:
         return
