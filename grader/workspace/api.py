@@ -18,6 +18,7 @@ from grader.base.late_names import late_names
 
 if TYPE_CHECKING:
     from grader.workspace.graph.graph_form import graph_form as graph_form
+    from grader.workspace.graph.included_nodes import unread_includes as unread_includes
     from grader.workspace.graph.joined_graph import JoinedGraph as JoinedGraph
     from grader.workspace.graph.joined_graph import PlacedEnd as PlacedEnd
     from grader.workspace.graph.joined_graph import join_launches as join_launches
@@ -35,11 +36,14 @@ if TYPE_CHECKING:
     from grader.workspace.graph.launch_graph import unconnected_ends as unconnected_ends
     from grader.workspace.graph.launch_graphs import launch_files as launch_files
     from grader.workspace.graph.launch_graphs import launch_graph as launch_graph
+    from grader.workspace.graph.lifecycle import LIFECYCLE_MANAGERS as LIFECYCLE_MANAGERS
+    from grader.workspace.graph.lifecycle import are_nodes_activated as are_nodes_activated
+    from grader.workspace.graph.lifecycle import has_lifecycle as has_lifecycle
+    from grader.workspace.graph.lifecycle import managed_nodes as managed_nodes
     from grader.workspace.graph.lookups import looked_up_transforms as looked_up_transforms
     from grader.workspace.graph.manual_ends import manual_ends as manual_ends
     from grader.workspace.graph.node_ends import opened_by_bridge as opened_by_bridge
     from grader.workspace.graph.started_controllers import spawned_by as spawned_by
-    from grader.workspace.graph.started_graph import unread_includes as unread_includes
     from grader.workspace.graph.started_worlds import has_programs as has_programs
     from grader.workspace.graph.started_worlds import started_worlds as started_worlds
     from grader.workspace.graph.used_files import used_file as used_file
@@ -63,16 +67,17 @@ if TYPE_CHECKING:
 else:
     _NAMES = {
         "graph.graph_form": "graph_form",
+        "graph.included_nodes": "unread_includes",
         "graph.joined_graph": "JoinedGraph PlacedEnd join_launches",
         "graph.launch_graph": "CONNECTION_KINDS GRAPH_NODE_KINDS Connection EndedProcess "
         "GivenValue GraphEnd GraphNode GraphTransform LaunchGraph "
         "Unread connections_in unconnected_ends",
         "graph.launch_graphs": "launch_files launch_graph",
+        "graph.lifecycle": "LIFECYCLE_MANAGERS are_nodes_activated has_lifecycle managed_nodes",
         "graph.lookups": "looked_up_transforms",
         "graph.manual_ends": "manual_ends",
         "graph.node_ends": "opened_by_bridge",
         "graph.started_controllers": "spawned_by",
-        "graph.started_graph": "unread_includes",
         "graph.started_worlds": "has_programs started_worlds",
         "graph.used_files": "used_file",
         "index.name_places": "NamePlaces",

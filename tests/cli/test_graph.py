@@ -242,7 +242,7 @@ def test_the_text_says_what_is_not_certain(workspace: Path) -> None:
         "Node(package='demo', executable='talker', parameters=[{'topic': os.environ.get('X')}])",
         "Node(package=os.environ.get('P'), executable='x')",
         "Node(package='tf2_ros', executable='static_transform_publisher', namespace='n',"
-        " arguments=['0', '0', '1', '0', '0', '0', 'map', 'odom'])",
+        " remappings=[('/tf_static', 'tf_static')], arguments=['0', '0', '1', '0', '0', '0', 'map', 'odom'])",
     )
     _, text, _ = graph(workspace)
     for words in (

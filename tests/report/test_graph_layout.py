@@ -60,7 +60,7 @@ def test_no_two_boxes_lie_upon_each_other(arrows: list[tuple[str, str]]) -> None
 
 def transform(parent: str, child: str) -> GraphTransform:
     """Return a transform between two frames."""
-    return GraphTransform(parent, child, "node", _AT)
+    return GraphTransform(parent, child, "code", True, "node", _AT)
 
 
 def test_transforms_are_a_tree() -> None:

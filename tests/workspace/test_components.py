@@ -41,7 +41,9 @@ _CODE = """\
 namespace eyes {
 class Eye : public rclcpp::Node {
 public:
-  explicit Eye(const rclcpp::NodeOptions & options) : Node("eye", options) {}
+  explicit Eye(const rclcpp::NodeOptions & options) : Node("eye", options) {
+    declare_parameter("rate", 5);
+  }
 };
 }
 RCLCPP_COMPONENTS_REGISTER_NODE(eyes::Eye)

@@ -17,9 +17,10 @@ def graph_in(folder: Path, name: str, text: str) -> Graph:
     return make_graph(open_submission(str(folder), Lab("urdf/rover.urdf", "rover")).workspace)
 
 
-def nodes_of(graph: Graph) -> list[tuple[str | None, str, bool | None, bool]]:
-    """Return name, kind, condition and end of each node."""
-    return [(node.name, node.kind, node.when, node.does_end) for node in graph.nodes]
+def nodes_of(graph: Graph) -> list[tuple[str, str, str]]:
+    """Return name, kind and container or manager of each node of the only launch file."""
+    [launched] = graph.launched
+    return [(node.name, node.kind, node.inside) for node in launched.nodes]
 
 
 _STARTED = """
@@ -29,16 +30,16 @@ Node(package='controller_manager', executable='spawner', arguments=['arm_control
 
 
 def test_a_started_controller_is_a_node_in_the_process_of_its_manager(tmp_path: Path) -> None:
-    """A spawner ends, and a controller that nothing spawns is no node."""
+    """A spawner is no node, and neither is a controller that nothing spawns."""
     graph = graph_in(tmp_path, "controller-started", _STARTED)
     assert nodes_of(graph) == [
-        ("/robot_state_publisher", "program", True, False),
-        ("/left/controller_manager", "program", True, False),
-        ("/left/arm_controller", "controller", True, False),
-        (None, "program", True, True),
+        ("/robot_state_publisher", "program", ""),
+        ("/left/controller_manager", "program", ""),
+        ("/arm_controller", "controller", "/controller_manager"),
     ]
-    manager = graph.nodes[1].process
-    assert graph.nodes[2].process is manager is not None
+    assert [process.program for process in graph.launched[0].processes] == [
+        "controller_manager/spawner"
+    ]
     owners = {end.owner for end in graph.ends if end.source == "controller"}
     assert owners == {"arm_controller"}
 
@@ -56,11 +57,13 @@ def test_names_that_are_not_known_are_none(tmp_path: Path) -> None:
     """Containers and components are nodes, and a namespace that a run decides leaves the name open."""
     graph = graph_in(tmp_path, "node-name", _CONDITIONAL)
     assert nodes_of(graph) == [
-        (None, "program", True, False),
-        ("/other", "program", True, False),
-        ("/parts", "program", True, False),
-        (None, "component", True, False),
+        ("", "program", ""),
+        ("/other", "program", ""),
+        ("/parts", "container", ""),
+        ("/rectify_node", "component", "/parts"),
     ]
     [(node, value)] = graph.given("background_r")
     assert (node.node_name, value.value) == ("other", 1)
-    assert [component.plugin for _, component in graph.components()] == ["image_proc::RectifyNode"]
+    assert [node.program for node in graph.launched[0].nodes][
+        -1
+    ] == "image_proc/image_proc::RectifyNode"

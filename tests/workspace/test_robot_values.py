@@ -347,21 +347,21 @@ WRONG: list[tuple[str, list[Edit]]] = [
     ),
     (
         (
-            "REF021 launch/rover.launch.py:15 use_sim_time is true, but nothing publishes /clock: the "
+            "REF021 launch/rover.launch.py:22 use_sim_time is true, but nothing publishes /clock: the "
             "time of the node stays 0"
         ),
-        [(LAUNCH, "robot_description': robot", "robot_description': robot, 'use_sim_time': True")],
+        [(LAUNCH, "parameters=[costmap]", "parameters=[costmap, {'use_sim_time': True}]")],
     ),
     (
         (
-            "REF021 launch/rover.launch.py:15 use_sim_time is true, but nothing publishes /clock: the "
+            "REF021 launch/rover.launch.py:22 use_sim_time is true, but nothing publishes /clock: the "
             "time of the node stays 0"
         ),
         [
             (
                 LAUNCH,
-                "robot_description': robot",
-                "robot_description': robot, 'use_sim_time': True",  # as in a simulation
+                "parameters=[costmap]",
+                "parameters=[costmap, {'use_sim_time': True}]",  # as in a simulation
             ),
             (LAUNCH, MORE, "# a simulation in Gazebo has a clock"),
             (PILOT, "self.send)", "self.send)\n        self.get_clock()"),
@@ -377,7 +377,7 @@ WRONG: list[tuple[str, list[Edit]]] = [
     ),
     (
         (
-            "REF021 rover/horn.py:9 horn and pilot both publish /drive: the robot obeys each in turn; "
+            "REF021 rover/horn.py:9 /horn and /pilot both publish /drive: the robot obeys each in turn; "
             "twist_mux chooses one"
         ),
         _with(
@@ -575,6 +575,10 @@ CORRECT: list[tuple[str, list[Edit]]] = [
         ),
     ),
     (
+        "robot_state_publisher without a clock",
+        [(LAUNCH, "robot_description': robot", "robot_description': robot, 'use_sim_time': True")],
+    ),
+    (
         "a variable with a default",
         _with("Node(package='rover', executable='pilot', name=os.environ.get('ROVER', 'a')),"),
     ),
@@ -596,8 +600,8 @@ def test_what_agrees_is_not_reported(edits: list[Edit]) -> None:
 
 _SIMULATED: Edit = (
     LAUNCH,
-    "robot_description': robot",
-    "robot_description': robot, 'use_sim_time': True",
+    "parameters=[costmap]",
+    "parameters=[costmap, {'use_sim_time': True}]",
 )
 _INCLUDED = "IncludeLaunchDescription(PathJoinSubstitution([FindPackageShare('{}'), 'launch', 'a.launch.py'])),"
 _IMPORTED: Edit = (
@@ -617,6 +621,7 @@ _IMPORTED: Edit = (
         ("Node(package='lidar_driver', executable='driver'),", False),
         ("ExecuteProcess(cmd=['fly', 'around']),", True),
         ("ExecuteProcess(cmd=['sleep', '1']),", False),
+        ("ExecuteProcess(cmd=['gz', 'sim', '-r', 'empty.sdf']),", False),
         (_INCLUDED.format("some_robot"), True),
         (_INCLUDED.format("slam_toolbox").replace("a.launch.py", "online_async_launch.py"), False),
         (

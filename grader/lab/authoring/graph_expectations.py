@@ -21,6 +21,7 @@ _OF_COMMANDS = (
     "trajectory_msgs/msg/JointTrajectory",
     "std_msgs/msg/Float64MultiArray",
 )
+_CLOCK = "/clock"  # which says nothing of what a node is for
 # The kinds of ends for which `node_runs` asks.
 _SEEN = ("publisher", "service", "action server", "client", "action client")
 _MAX_WAYS, _MAX_TRANSFORMS = 4, 12  # of one launch file
@@ -51,11 +52,22 @@ class LaunchConnections:
                     arguments=placed, title=title, otherwise=(expectation,)
                 )
             yield expectation
-        for start, end in list(self._ways())[:_MAX_WAYS]:
+        ways = list(self._ways())[:_MAX_WAYS]
+        for start, end in ways:
             expectation = self._expectation(
                 "connects", f"{start} {end}", **{"from": start, "to": end}
             )
-            yield expectation._replace(title=f"messages find a way from {start} to {end}")
+            expectation = expectation._replace(title=f"messages find a way from {start} to {end}")
+            if self._is_obeyed(end):
+                arguments = {**expectation.arguments, "read": True}
+                title = f"messages find a way from {start} to what reads {end}"
+                expectation = expectation._replace(arguments=arguments, title=title)
+            yield expectation
+        arrived = {end for _, end in ways}
+        for topic in [each for each in self._commands() if each not in arrived]:
+            arguments = {"from": topic, "to": topic, "read": True}
+            expectation = self._expectation("connects", topic, **arguments)
+            yield expectation._replace(title=f"what is published on {topic} is read")
 
     def needed(self, launch: Launch, nodes: Sequence[str], *, are_ends_asked: bool) -> list[str]:
         """Return the nodes that are needed for more than what other expectations ask for.
@@ -108,6 +120,21 @@ class LaunchConnections:
                 by_frames.setdefault((transform.parent, transform.child), transform)
         yield from by_frames.values()
 
+    def _is_obeyed(self, topic: str) -> bool:
+        """Return whether a node of another package certainly reads what is published."""
+        reader = self._graph.find_reader(topic)
+        return reader is not None and not self._is_own(reader.node)
+
+    def _commands(self) -> Iterator[str]:
+        """Yield the topics of commands of own nodes that nodes of other packages obey."""
+        sent: list[GraphEnd] = []
+        for node in self._graph.graph.nodes:
+            if self._is_own(node):
+                sent += [end for end in node.ends if end.type.startswith(_OF_COMMANDS)]
+        for topic in _topics(sent, "publisher"):
+            if self._is_obeyed(topic):
+                yield topic
+
     def _ways(self) -> Iterator[tuple[str, str]]:
         """Yield the topics between which own nodes take messages from other nodes to other ones."""
         nodes = self._graph.graph.nodes
@@ -156,6 +183,6 @@ def _topics(ends: Iterable[GraphEnd], kind: str) -> dict[str, str]:
     """Return the topics of the ends of a kind, each with its first type."""
     topics: dict[str, str] = {}
     for end in ends:
-        if end.kind == kind:
+        if end.kind == kind and end.name != _CLOCK:
             topics.setdefault(end.name, end.type)
     return topics

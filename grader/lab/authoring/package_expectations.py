@@ -22,8 +22,6 @@ from grader.lab.authoring.expectations import (
 )
 from grader.lab.authoring.graph_expectations import LaunchConnections
 from grader.lab.checks.parameters import measures
-from grader.lab.checks.started_nodes import LIFECYCLE_MANAGER, managed_nodes
-from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
 from grader.ros.installation.places import PREFIX, is_of_one_machine
 from grader.ros.launch.launch_model import Launch, StartedNode
@@ -32,7 +30,10 @@ from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.workspace.api import (
+    LIFECYCLE_MANAGERS,
+    has_lifecycle,
     looked_up_transforms,
+    managed_nodes,
     opened_by_bridge,
     parameter_callbacks,
     spawned_by,
@@ -627,7 +628,7 @@ def _launch_expectations(
     needed = connections.needed(launch, started, are_ends_asked=are_ends_asked)
     nodes = [node for node in needed if node not in _STATIC]
     active = _lifecycle_nodes(submission, launch)
-    managers = [node for node in launch.nodes if node.executable == LIFECYCLE_MANAGER]
+    managers = [node for node in launch.nodes if node.executable in LIFECYCLE_MANAGERS]
     managed, _ = managed_nodes(submission.workspace, managers)
     if managed <= {*active}:  # something else may activate own nodes
         programs = {node.name for node in managers}
@@ -658,12 +659,11 @@ def _launch_expectations(
 
 def _lifecycle_nodes(submission: Submission, launch: Launch) -> list[str]:
     """Return the names of the own nodes with a lifecycle that a launch file starts."""
-    code, names = submission.workspace.code, []
+    workspace, names = submission.workspace, []
     for node in launch.nodes:
-        expectations = code.own_node(node) if node.when else None
-        data = content(submission, expectations.location.path) if expectations is not None else None
-        name = code.find_name(node)
-        if data is not None and name and b"LifecycleNode" in data:
+        is_own = node.when and workspace.find_package(node) is not None
+        name = workspace.code.find_name(node)
+        if is_own and name and has_lifecycle(workspace, node):
             names.append(name)
     return names
 

@@ -49,7 +49,13 @@ _ENDS_OF_TOPIC = (*_SENDS, *_READS)
 
 
 def connects(
-    package: Package, submission: Submission, *, from_: str, to: str, launch: str | None = None
+    package: Package,
+    submission: Submission,
+    *,
+    from_: str,
+    to: str,
+    read: bool = False,
+    launch: str | None = None,
 ) -> Outcome:
     """Messages find a way from one topic to another one through nodes that are started, whatever
     their names and their number.
@@ -61,6 +67,8 @@ def connects(
     Args:
         from: The topic where the way begins.
         to: The topic where it ends.
+        read: Whether a node, a controller or a bridge must read the last topic, with its type. If
+            both topics are one, nothing else is asked.
         launch: The name of the launch file; default: all launch files together.
     """
     start, end = _full_name(from_), _full_name(to)
@@ -68,6 +76,8 @@ def connects(
         if topic in _HIDDEN:
             raise RubricError((f"connects follows no messages of {topic}",))
     launched = launch_together(package, submission, launch)
+    if read and start == end:
+        return _judge_reader(launched, end, f"messages are published on {end}")
     way = launched.graph.find_way(start, end)
     if not way.arrives:
         return launched.failure or _fail_way(launched, start, end, way.nodes)
@@ -76,7 +86,29 @@ def connects(
         raise NotDecided(f"{cause} from {start} to {end}: {way.doubt}", cause)
     names = tuple(launched.graph.graph.nodes[number].label for number in way.nodes)
     message = f"messages go from {start} to {end} through {enumerated(names)}"
-    return judged(True, message, names)
+    return _judge_reader(launched, end, message) if read else judged(True, message, names)
+
+
+def _judge_reader(launched: Launched, topic: str, message: str) -> Outcome:
+    """Return whether what is published on a topic is read."""
+    reader = launched.graph.find_reader(topic)
+    if reader is not None:
+        return judged(True, f"{message}, which {reader.node.label} reads", reader.node.label)
+    sent, read = launched.graph.ends(_SENDS, topic), launched.graph.ends(_READS, topic)
+    _check_open(launched, f"{topic} is published", sent, _SENDS)
+    _check_open(launched, f"something reads {topic}", read, _READS)
+    if launched.failure is not None or not sent:
+        return launched.failure or _fail_absent(launched, _SENDS, "publishes", topic)
+    publisher = sent[0]
+    message = f"{publisher.node.label} publishes {topic} with {publisher.end.type}"
+    if read:
+        detail = f", and {read[0].node.label} reads it with {read[0].end.type}"
+        return failed(f"{message}{detail}", publisher.end.location, cause="type")
+    detail = ""
+    for placed in launched.graph.unfed(publisher.end.type):
+        detail = f"; {placed.node.label} waits for {placed.end.type} on {placed.end.name}"
+    message = f"{message}, which nothing reads"
+    return failed(message, publisher.end.location, detail=detail, cause="way")
 
 
 def topic_has_type(

@@ -86,8 +86,7 @@ def _failing_programs(
     """Return the names of the programs that certainly cannot run, each with the reason."""
     failures: dict[str, Outcome] = {}
     stopping = stopping_mistakes(workspace)
-    loaded = (component.node for component in launch.components)
-    for node in (*launch.nodes, *filter(None, loaded)):
+    for node in launch.nodes:
         fault = None
         if node.when is not False:
             fault = _why_not_run(workspace, package, node, stopping)
@@ -138,30 +137,7 @@ def evaluate_launch(package: Package, name: str) -> "Launch":
     if launch.unread:
         raise NotDecided(launch.unread, "the launch file cannot be read")
     check_syntax(path, launch)
-    return with_components(launch)
-
-
-def with_components(launch: "Launch") -> "Launch":
-    """Return a launch file with its components among its nodes, if all of an action are known.
-
-    What such an action does is no longer unknown.
-    """
-    if not launch.components and not launch.containers:
-        return launch
-    unknown_at = set()
-    nodes = []
-    for component in launch.components:
-        node = component.node
-        if node is None or node.namespace is None or node.remaps is None:
-            unknown_at.add(component.loaded_at)
-        elif component.when is not False:
-            nodes.append(node)
-    actions = [component.loaded_at for component in launch.components]
-    actions += [container.location for container in launch.containers]
-    known_at = {*actions} - unknown_at
-    unknown = tuple(row for row in launch.unknown if row.location not in known_at)
-    doubts = tuple(row for row in launch.doubts if row.location not in known_at)
-    return launch._replace(nodes=(*launch.nodes, *nodes), unknown=unknown, doubts=doubts)
+    return launch.with_components()
 
 
 def check_syntax(path: str, launch: "Launch") -> None:

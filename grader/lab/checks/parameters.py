@@ -15,7 +15,7 @@ from grader.base.transforms import Vector
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.checks.visuals import main_visual
 from grader.lab.submission.submission import Submission
-from grader.ros.launch.launch_model import ParameterValue, StartedNode
+from grader.ros.launch.launch_model import ParameterValue
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
@@ -195,9 +195,11 @@ def find_value(submission: Submission, node: str, parameter: str) -> ParameterVa
 
 def _explain_nothing_given(workspace: Workspace, node: str) -> NotDecided | MissingElement:
     """Return the error of a node that nothing gives parameters to."""
-    for _, other in _nameless(workspace):
-        cause = "the name of a node is only in its program"
-        return NotDecided(f"{cause}: {other.package}/{other.executable}", cause)
+    for _, other in workspace.launches.nodes:
+        is_own = workspace.find_package(other) is not None
+        if (is_own or other.parameters) and workspace.code.find_name(other) is None:
+            cause = "the name of a node is only in its program"
+            return NotDecided(f"{cause}: {other.package}/{other.executable}", cause)
     there = similar_there(node, workspace.parameters.owners)
     message = f"nothing gives parameters to a node {quoted(node)}{there}"
     return MissingElement("parameters of the node", node, message=message)
@@ -214,19 +216,6 @@ def _explain_missing_parameter(submission: Submission, node: str, parameter: str
     )
     at = written.get(closest(parameter, written) or "", next(iter(written.values()), None))
     return MissingElement("parameter", f"{node} {parameter}", message=message, location=at)
-
-
-def _nameless(workspace: Workspace) -> list[tuple[Package, StartedNode]]:
-    """Return the own nodes that have no name, with their packages.
-
-    Neither the launch file nor their programs give one.
-    """
-    nameless = []
-    for _, node in workspace.launches.nodes:
-        package = workspace.find_package(node)
-        if package is not None and workspace.code.find_name(node) is None:
-            nameless.append((package, node))
-    return nameless
 
 
 def _equal(actual: Any, wanted: Any, tolerance: float) -> bool:

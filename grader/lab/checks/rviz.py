@@ -8,7 +8,6 @@ from grader.base.names import did_you_mean
 from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import About
-from grader.lab.checks.launching import with_components
 from grader.lab.checks.outcome import Outcome, Status, failed, judged, passed
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
@@ -407,7 +406,7 @@ def _judge_prefix(model: "Display", opened: "Launch | None") -> _Verdict:
 
 def _read_launch(package: Package, launch: str) -> "Launch | None":
     path = package.launch_file(launch) if launch else None
-    return with_components(package.launch(path)) if path is not None else None
+    return package.launch(path).with_components() if path is not None else None
 
 
 def _rviz_path(package: Package, name: str, opened: "Launch | None") -> str:

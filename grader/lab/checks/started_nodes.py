@@ -13,7 +13,6 @@ from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import MAX_NAMED, enumerated, quoted
 from grader.ros.installation.places import PREFIX
-from grader.ros.python.values import Unknown
 from grader.ros.xml.urdf_format import numbers_in
 
 if TYPE_CHECKING:
@@ -31,14 +30,6 @@ _VERBS: Mapping[str, str] = {
 }
 # Faults in the code of a node that do not keep it from opening what it opens.
 _HARMLESS = frozenset({"service-response", "entity-kept"})
-LIFECYCLE_MANAGER = "lifecycle_manager"  # of Nav2
-# What activates a node with a lifecycle: an event of a launch file, its own code, or a process.
-_ACTIVATES = re.compile(
-    r"TRANSITION_ACTIVATE|trigger_activate|[.>]activate\(\)|autostart\s*+=\s*+True|lifecycle_bringup"
-    r"|change_state|lifecycle\W{1,9}set\b[^\n]{0,99}(?:\n[^\n]{0,99}){0,3}\bactivate\b"
-)
-_SETS_STATE = re.compile(r"lifecycle\W{1,9}set\b")
-_NAMES_ACTIVE = re.compile(r"\bactivate\b")
 _CODE = (".py", ".cpp", ".hpp", ".h")
 _Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
 
@@ -113,18 +104,14 @@ def _not_active(launch: "Launch", workspace: "Workspace", names: Sequence[str]) 
     """Yield the nodes with a lifecycle that nothing activates."""
     if not names:
         return
-    texts = [*workspace.texts.launch_texts]
-    for package in workspace.packages:
-        sources = workspace.texts.read_sources(package, _CODE)
-        texts += [source.text for source in sources]
-    if any(_ACTIVATES.search(text) for text in texts):
+    from grader.workspace.api import LIFECYCLE_MANAGERS, are_nodes_activated, managed_nodes
+
+    are_activated = are_nodes_activated(workspace)
+    if are_activated:
         return
-    managers = [node for node in launch.nodes if node.executable == LIFECYCLE_MANAGER]
+    managers = [node for node in launch.nodes if node.executable in LIFECYCLE_MANAGERS]
     managed, is_known = managed_nodes(workspace, managers)
-    if any(_SETS_STATE.search(text) and _NAMES_ACTIVE.search(text) for text in texts):
-        is_known = False
-    loaded = [component.plugin or "" for component in launch.components]
-    is_known = is_known and not any(plugin.endswith("LifecycleManager") for plugin in loaded)
+    is_known = is_known and are_activated is False
     for name in names:
         if name.rpartition("/")[2] in managed:
             continue
@@ -133,25 +120,6 @@ def _not_active(launch: "Launch", workspace: "Workspace", names: Sequence[str]) 
             yield Fault(f"nothing activates the node {quoted(name)}", at)
         else:
             yield Fault(f"something activates the node {quoted(name)}", is_certain=False)
-
-
-def managed_nodes(
-    workspace: "Workspace", managers: "Iterable[StartedNode]"
-) -> tuple[set[str], bool]:
-    """Return the nodes that lifecycle managers activate on their own, and whether these are all."""
-    managed: set[str] = set()
-    is_known = True
-    for node in managers:
-        owner = node.node_name or LIFECYCLE_MANAGER
-        for given in workspace.parameters.owners.get(owner, ()):
-            rows = (given.values.get(name) for name in ("node_names", "autostart"))
-            names, starts = (row.value if row is not None else None for row in rows)
-            if isinstance(names, list) and starts is True:
-                managed.update(map(str, names))
-            is_known = is_known and not given.unknown
-            is_known = is_known and not isinstance(names, Unknown)
-            is_known = is_known and not isinstance(starts, Unknown)
-    return managed, is_known
 
 
 def _not_opened(launch: "Launch", workspace: "Workspace", wanted: Wanted) -> Iterator[Fault | None]:

@@ -89,7 +89,8 @@ def load_by_command(findings: Findings, call: Call, words: list[str], when: bool
             return False
     component = LoadedComponent(None, None, when, at, at, container)
     if not any(word.startswith("-") or PART_UNKNOWN in word for word in (package, plugin)):
-        node = _with_options(StartedNode(package, plugin.removeprefix("::"), when, at), options)
+        loaded = StartedNode(package, plugin.removeprefix("::"), when, at, is_component=True)
+        node = _with_options(loaded, options)
         component = component._replace(package=package, plugin=plugin, node=node)
     findings.components.append(component)
     return True
@@ -169,7 +170,6 @@ def _add_components(
                 at,
                 loaded_at,
                 container,
-                has_parameters=bool(item.kwargs.get("parameters")),
                 node=node,
             )
         )
@@ -202,6 +202,7 @@ def _as_node(
         node_name=_text_if_known(item.kwargs.get("name") or "", context, item),
         parameters=(*context.to_all.get(TO_ALL, ()), *given),
         included_by=context.included_by,
+        is_component=True,
     )
     with suppress(EvaluationSignal):
         namespace = namespace_below(item.kwargs.get("namespace") or "", context, item.at)

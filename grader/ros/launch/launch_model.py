@@ -227,6 +227,7 @@ class StartedNode(NamedTuple):
         str, ...
     ] = ()  # the paths below the prefix of the launch files by which its own is included
     has_prefix: bool = False  # whether another program starts it, such as a terminal
+    is_component: bool = False  # whether a container loads it; its program is the class
 
     def topic(self, name: str) -> str | None:
         """Return the topic that the node has for a name in its program.
@@ -293,7 +294,6 @@ class LoadedComponent(NamedTuple):
     location: Location
     loaded_at: Location  # by which action
     container: str | None = ""
-    has_parameters: bool = False  # perhaps from files, which are not evaluated
     # As a program would be started, whose name is the plug-in; None where that is not known.
     node: StartedNode | None = None
 
@@ -405,6 +405,27 @@ class Launch(NamedTuple):
         if is_read:
             return ""
         return "a launch file cannot be read"
+
+    def with_components(self) -> "Launch":
+        """Return the launch file with its components among its nodes.
+
+        What an action does all of whose components are known is no longer unknown.
+        """
+        if not self.components and not self.containers:
+            return self
+        unknown_at = set()
+        nodes = []
+        for component in self.components:
+            if component.node is None:
+                unknown_at.add(component.loaded_at)
+            else:
+                nodes.append(component.node)
+        actions = [component.loaded_at for component in self.components]
+        actions += [container.location for container in self.containers]
+        known_at = {*actions} - unknown_at
+        unknown = tuple(row for row in self.unknown if row.location not in known_at)
+        doubts = tuple(row for row in self.doubts if row.location not in known_at)
+        return self._replace(nodes=(*self.nodes, *nodes), unknown=unknown, doubts=doubts)
 
     def list_frames(self, link: str) -> tuple[str | None, ...]:
         """Return the frames of a link that robot_state_publisher publishes.

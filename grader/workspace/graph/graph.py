@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TypeVar
 
-from grader.ros.launch.launch_model import LoadedComponent, ParameterValue, StartedNode
+from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.nodes.node_facts import EndpointKind
-from grader.ros.package.package import Package
 from grader.workspace.graph.bridge_rows import BridgeRow, bridge_rows
-from grader.workspace.graph.code_ends import End, EndSource
+from grader.workspace.graph.code_ends import END_SOURCES, End, EndSource
+from grader.workspace.graph.launch_graph import GraphTransform, LaunchGraph
 from grader.workspace.graph.node_ends import list_ends
-from grader.workspace.graph.running_nodes import RunningNode, nodes_in
-from grader.workspace.graph.transform_edges import Edge, edges_in
+from grader.workspace.graph.started_graph import started_graph
+from grader.workspace.graph.transform_edges import edges_in
 from grader.workspace.model.workspace import Workspace
 
 _Row = TypeVar("_Row")
@@ -37,12 +37,10 @@ class Graph:
     workspace: Workspace
 
     @cached_property
-    def nodes(self) -> Sequence[RunningNode]:
-        """The nodes that are or may be started, with controllers and components."""
-        nodes: list[RunningNode] = []
-        for launch in range(len(self.workspace.launches.roots)):
-            nodes += nodes_in(self.workspace, launch)
-        return nodes
+    def launched(self) -> Sequence[LaunchGraph]:
+        """What runs after each launch file, with controllers, components and included nodes."""
+        count = len(self.workspace.launches.roots)
+        return [started_graph(self.workspace, number) for number in range(count)]
 
     @cached_property
     def ends(self) -> Sequence[End]:
@@ -56,9 +54,9 @@ class Graph:
         return ends
 
     @cached_property
-    def edges(self) -> Sequence[Edge]:
+    def edges(self) -> Sequence[GraphTransform]:
         """The transforms of all nodes, whatever conditions say."""
-        edges: list[Edge] = []
+        edges: list[GraphTransform] = []
         for launch in range(len(self.workspace.launches.roots)):
             edges += edges_in(self.workspace, launch)
         return edges
@@ -72,6 +70,29 @@ class Graph:
     def certain(self, kind: EndpointKind, *sources: EndSource) -> list[End]:
         """Return the ends of a kind whose names are known, of nodes that certainly are started."""
         return [end for end in self.of_kind(kind, sources=sources) if end.is_certain]
+
+    def names_opened(self, kind: EndpointKind) -> set[str]:
+        """Return the topics that something opens in one way.
+
+        This includes the rows of bridges that nothing starts.
+        """
+        names = {end.name for end in self.of_kind(kind, sources=END_SOURCES)}
+        for row in bridge_rows(self.workspace):
+            if row.is_published if kind == "publisher" else row.is_read:
+                names.add(f"/{row.ros}")
+        return names
+
+    @cached_property
+    def names_read(self) -> set[str]:
+        """The topics to which code subscribes under the names that it writes, if it is started."""
+        names: set[str] = set()
+        for code in self.workspace.code.by_package.values():
+            for node in code.nodes:
+                self.workspace.charge(1 + len(node.endpoints))
+                for endpoint in node.endpoints:
+                    if endpoint.kind == "subscription" and endpoint.name is not None:
+                        names.add(f"/{endpoint.name.removeprefix('/')}")
+        return names
 
     def pairs(self, asking: Iterable[End], offering: Iterable[End]) -> Iterator[tuple[End, End]]:
         """Yield each end that asks for another one with each that offers it by its name."""
@@ -100,13 +121,6 @@ class Graph:
             for end in others:
                 if row.is_published if end.kind == "subscription" else row.is_read:
                     yield end, row
-
-    def components(self) -> Iterator[tuple[Package, LoadedComponent]]:
-        """Yield the components that launch files load, each with the package of its launch file."""
-        for package, launch in self.workspace.launches.roots:
-            self.workspace.charge(1 + len(launch.components))
-            for component in launch.components:
-                yield package, component
 
     def given(self, parameter: str) -> Iterator[tuple[StartedNode, ParameterValue]]:
         """Yield the nodes that are given a parameter of a name, each with its value."""

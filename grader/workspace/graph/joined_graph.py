@@ -1,7 +1,6 @@
 """What runs after launch files are launched together, and what may be asked of it."""
 
-from collections.abc import Collection, Iterator
-from functools import lru_cache
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
 from grader.ros.launch.launch_model import StartedNode
@@ -14,6 +13,7 @@ from grader.workspace.graph.launch_graph import (
     LaunchGraph,
     Unread,
     connections_in,
+    fault_between,
 )
 from grader.workspace.graph.launch_graphs import launched_alone
 from grader.workspace.graph.launched_transforms import (
@@ -32,6 +32,8 @@ from grader.workspace.graph.message_ways import (
 from grader.workspace.graph.started_graph import started_graph
 from grader.workspace.model.workspace import Workspace
 
+_SENDS: Sequence[EndpointKind] = ("publisher",)
+_READS: Sequence[EndpointKind] = ("subscription",)
 _Launches = tuple[tuple[Workspace, int], ...]
 
 
@@ -56,6 +58,28 @@ class JoinedGraph(NamedTuple):
     def find_way(self, start: str, end: str) -> MessageWay:
         """Return how messages of one topic lead to messages of another one."""
         return find_way(self.graph, start, end)
+
+    def find_reader(self, topic: str) -> PlacedEnd | None:
+        """Return what certainly reads a topic that another node certainly publishes.
+
+        Their types and qualities of service fit.
+        """
+        sent = [placed for placed in self.ends(_SENDS, topic) if not placed.doubt]
+        for reader in self.ends(_READS, topic):
+            for publisher in sent:
+                is_other = publisher.node is not reader.node and not reader.doubt
+                if is_other and not fault_between(publisher.end, reader.end):
+                    return reader
+        return None
+
+    def unfed(self, kind: str) -> Iterator[PlacedEnd]:
+        """Yield what reads a type, or its stamped twin, on topics that nothing publishes."""
+        plain = kind.removesuffix("Stamped")
+        for node in self.graph.nodes:
+            for end in node.ends:
+                is_asking = end.kind == "subscription" and end.type.removesuffix("Stamped") == plain
+                if is_asking and not self.ends(_SENDS, end.name):
+                    yield PlacedEnd(end, node, why_end_is_open(node, end))
 
     def ends(self, kinds: Collection[EndpointKind], name: str) -> list[PlacedEnd]:
         """Return the ends of these kinds that have a name, or may have it."""
@@ -107,13 +131,8 @@ def join_launches(
     nodes: list[GraphNode] = []
     unread: list[Unread] = []
     for each in launches:
-        graph = _graph_of_launch(*each)
+        graph = started_graph(*each)
         nodes += [node for node in graph.nodes if node.program not in unrun]
         unread += graph.unread
     joined = LaunchGraph("", tuple(nodes), unread=tuple(unread))
     return JoinedGraph(joined, launches, frozenset(unrun))
-
-
-@lru_cache(maxsize=16)
-def _graph_of_launch(workspace: Workspace, number: int) -> LaunchGraph:
-    return started_graph(workspace, number)

@@ -16,6 +16,7 @@ from grader.ros.nodes.node_facts import EndpointKind, Qos
 GraphNodeKind = Literal["program", "component", "container", "controller"]
 GRAPH_NODE_KINDS: tuple[GraphNodeKind, ...] = get_args(GraphNodeKind)
 _ConnectionKind = Literal["topic", "service", "action"]
+_TransformSource = Literal["robot", "static", "code", "program", "controller", "Gazebo"]
 CONNECTION_KINDS: tuple[_ConnectionKind, ...] = get_args(_ConnectionKind)
 _OFFERS: Mapping[EndpointKind, EndpointKind] = {
     "publisher": "subscription",
@@ -106,16 +107,27 @@ class EndedProcess(NamedTuple):
 
 
 class GraphTransform(NamedTuple):
-    """A transform that something publishes, or may publish."""
+    """A transform that something publishes, or may publish; a frame that is not known is empty.
+
+    Rules that say that two programs place one frame read those that are certain; rules that say
+    that nothing connects two frames read all.
+    """
 
     parent: str
     child: str
+    source: _TransformSource
+    is_certain: bool
     by: str
     location: Location
     is_static: bool = False
-    is_certain: bool = True
     pose: Transform | None = None  # T_parent_child, where it never changes and is known
-    needs: tuple[str, ...] = ()  # topics of joint states, of which it needs one
+    # The topics of joint states without which robot_state_publisher does not publish it.
+    needs: tuple[str, ...] = ()
+
+    @property
+    def is_known(self) -> bool:
+        """Whether both frames are known."""
+        return bool(self.parent and self.child)
 
 
 class Unread(NamedTuple):

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 
 from grader.ros.known.end_rows import opened_ends
 from grader.ros.known.package_rows import find_transforms, package_row
-from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.static_transforms import STATIC_PUBLISHER
 from grader.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
 from grader.workspace.graph.code_ends import transforms_sent
@@ -45,17 +45,10 @@ def transforms_in(
     not_started = {node.location for node in launch.nodes if node.when is False}
     for edge in edges_in(workspace, number):
         if edge.source != "code" and edge.location not in not_started:
-            yield GraphTransform(
-                edge.parent,
-                edge.child,
-                edge.by,
-                edge.location,
-                edge.is_static,
-                edge.is_certain,
-                edge.pose,
-                edge.needs,
-            )
-    for node in _launched_nodes(launch, without):
+            yield edge
+    for node in launch.nodes:
+        if node.when is False or node.name in without:
+            continue
         yield from _bridged_by_default(workspace, node)
         for facts in workspace.code.find_nodes(node):
             for parent, child, sent in transforms_sent(workspace, node, facts):
@@ -64,10 +57,11 @@ def transforms_in(
                 yield GraphTransform(
                     parent,
                     child,
+                    "code",
+                    is_certain,
                     node.executable,
                     sent.location,
                     sent.is_static,
-                    is_certain,
                     sent.pose,
                 )
 
@@ -84,7 +78,7 @@ def _bridged_by_default(workspace: Workspace, node: StartedNode) -> Iterator[Gra
             if frames is not None:
                 by = f"the system {name_system(plugin)} of Gazebo"
                 is_certain = f"model/{root.get('name')}/tf" in topics and node.when is True
-                yield GraphTransform(*frames, by, place(plugin), is_certain=is_certain)
+                yield GraphTransform(*frames, "Gazebo", is_certain, by, place(plugin))
 
 
 def _topics_of_transforms(workspace: Workspace, node: StartedNode) -> set[str]:
@@ -93,15 +87,6 @@ def _topics_of_transforms(workspace: Workspace, node: StartedNode) -> set[str]:
         return set()
     rows = rows_of_bridge(workspace, node)
     return {row.gz for row in rows if row.is_published and node.topic(f"/{row.ros}") == _TF}
-
-
-def _launched_nodes(launch: Launch, without: Collection[str]) -> list[StartedNode]:
-    """Return the programs and components that a launch file starts or may start."""
-    nodes = [node for node in launch.nodes if node.when is not False]
-    for component in launch.components:
-        if component.node is not None and component.when is not False:
-            nodes.append(component.node)
-    return [node for node in nodes if node.name not in without]
 
 
 def is_for_transforms(workspace: Workspace, node: StartedNode) -> bool:
@@ -126,9 +111,11 @@ def unread_transforms(
         if not (transform.parent and transform.child):
             yield Unread(f"a frame of {transform.by} is not known", transform.location)
     own_programs = set()
-    read_at = {node.location for node in launch.nodes}  # others are included, or components
-    for node in _launched_nodes(launch, without):
+    read_at = {node.location for node in launch.nodes if not node.is_component}
+    for node in launch.nodes:
         reason = ""
+        if node.when is False or node.name in without:
+            continue
         if workspace.find_package(node) is not None:
             own_programs.add(node.name)
             reason = _why_own_is_unread(workspace, node)

@@ -106,10 +106,7 @@ def _inverts(code: str) -> _Inverting:
 
 def _read_lookups(workspace: Workspace) -> Iterator[_LookedUp]:
     started: set[Location] = set()
-    nodes = [node for _, node in workspace.launches.nodes]
-    for _, launch in workspace.launches.roots:
-        nodes += [component.node for component in launch.components if component.node is not None]
-    for node in nodes:
+    for _, node in workspace.launches.nodes:
         started.update(facts.location for facts in workspace.code.find_nodes(node))
         if node.when is not False:
             yield from _pairs(list_frames(workspace, node), node.executable)

@@ -22,7 +22,8 @@ def manual_ends(ends: Sequence[GraphEnd]) -> list[tuple[GraphEnd, list[str]]]:
 
 def _connects(row: OpenedEnds, end: GraphEnd) -> bool:
     """Return whether a program has the other end, with its name and type."""
-    for kind, name, message in row.fixed:
+    varying = [(each.kind, each.name, each.type) for each in row.varying]
+    for kind, name, message in (*row.fixed, *varying):
         is_of_kind = kind == OPPOSITES[end.kind]
         if is_of_kind and f"/{name.lstrip('/')}" == end.name and shown_type(message) == end.type:
             return True

@@ -1,27 +1,27 @@
 """Make the graph of one launch file of a workspace."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from grader.base.errors import NotDecided
 from grader.base.source import Location
 from grader.ros.known.end_rows import (
-    IncludedNode,
     OnlyMore,
-    launch_file_is_known,
-    nodes_of_launch_file,
+    OpenedEnds,
     opened_ends,
 )
-from grader.ros.known.package_rows import controller_row, package_row, program_row
+from grader.ros.known.package_rows import controller_row, program_row
 from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import Release
-from grader.ros.launch.launch_model import GivenParameters, Launch, PassedArguments, StartedNode
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters, list_controllers
-from grader.ros.nodes.node_facts import NodeFacts
+from grader.ros.nodes.node_facts import NodeFacts, Qos
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.workspace.graph.bridge_rows import BRIDGE, are_rows_known, rows_of_bridge
 from grader.workspace.graph.code_ends import opened_by_code
+from grader.workspace.graph.included_nodes import included_nodes, unread_includes
 from grader.workspace.graph.launch_graph import (
     EndedProcess,
     GivenValue,
@@ -50,6 +50,8 @@ _RVIZ, _IMAGE_BRIDGE = "rviz2", "image_bridge"
 _AT_RUN_TIME = "whether it is started is known only at run time"
 _HIDDEN = frozenset({"/rosout", "/parameter_events", "/tf", "/tf_static"})
 _GAZEBO_CLASSIC, _SPAWN = ("gazebo", "gzserver"), "gazebo_ros/spawn_entity.py"
+_NO_RELEASE = "the release of ROS 2, on which it depends, is not stated"
+_USUAL_RELEASES: tuple[Release, ...] = ("humble", "jazzy")
 _TOO_MUCH = "reading it takes more work than one workspace may use"
 
 
@@ -63,6 +65,7 @@ class _Making(NamedTuple):
     release: Release
 
 
+@lru_cache(maxsize=16)
 def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
     """Return what runs after a launch file is launched, by its number among the roots."""
     package, launch = workspace.launches.roots[number]
@@ -70,7 +73,8 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
     nodes: list[GraphNode] = []
     processes: list[EndedProcess] = []
     not_started: list[EndedProcess] = []
-    for process_number, node in enumerate(launch.nodes):
+    programs = [node for node in launch.nodes if not node.is_component]
+    for process_number, node in enumerate(programs):
         process = EndedProcess(node.name, node.location, _find_doubt(node))
         if node.when is False:
             not_started.append(process)
@@ -79,7 +83,7 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
         else:
             for graph_node in _nodes_of_program(making, node):
                 nodes.append(graph_node._replace(process=process_number))
-    nodes += _components(making)
+    nodes += _components(making, {node.location for node in programs})
     nodes += _controllers(making)
     nodes += _included_programs(making, processes)
     nodes += _plugins(making, [*nodes], processes)
@@ -172,6 +176,7 @@ def _own_node(
         if opens_more and row is not None:  # a well-known program whose sources are here
             named = node._replace(node_name=name)
             ends += ends_of_row(row, named, given, making.release)
+        ends += _clock_read(given)
         defaults = {each.name: each.default for each in facts.parameters if each.is_declared}
         parameters += _different(given, defaults)
     except NotDecided:
@@ -252,10 +257,10 @@ def _known_node(
     `given_to` is what has its parameters, if that is in another namespace.
     """
     row = opened_ends(node.package, node.executable)
-    of_program = program_row(node.package, node.executable)
     name = node.node_name
     if name == "":
-        name = (row.name if row is not None else "") or of_program.name
+        in_program = making.workspace.code.name_in_program(node)
+        name = (row.name if row is not None else "") or in_program
     named = node._replace(node_name=name)
     ends: list[GraphEnd] = []
     parameters: list[GivenValue] = []
@@ -272,6 +277,7 @@ def _known_node(
         if node.executable == _RVIZ:
             ends = _ends_of_rviz(making, named) or ends
         ends += _ends_for_rules(making, named)
+        ends += _clock_read(given)
         defaults: dict[str | None, object] = {}
         for parameter in given.values:
             parameter_row = row_for(node.name, parameter, making.release)
@@ -284,6 +290,14 @@ def _known_node(
         opens_more, only = _TOO_MUCH, ""
     made = _graph_node(node, name, kind, inside)._replace(opens_more=opens_more, opens_only=only)
     return made._replace(ends=_shown(ends), parameters=tuple(parameters))
+
+
+def _clock_read(given: NodeParameters) -> Iterator[GraphEnd]:
+    """Yield the clock that a node subscribes to which uses simulated time: time_source.cpp."""
+    used = given.values.get("use_sim_time")
+    if used is not None and used.value is True:
+        qos = Qos(1, "best_effort", "volatile")
+        yield GraphEnd("subscription", "/clock", "rosgraph_msgs/msg/Clock", used.location, qos)
 
 
 def _ends_for_rules(making: _Making, node: StartedNode) -> Iterator[GraphEnd]:
@@ -319,12 +333,11 @@ def _bridged_images(node: StartedNode) -> Iterator[GraphEnd]:
             yield GraphEnd("publisher", topic, "sensor_msgs/msg/Image", node.location, note=note)
 
 
-def _components(making: _Making) -> Iterator[GraphNode]:
-    """Yield the containers of a launch file, and the components that it loads."""
+def _components(making: _Making, programs: Collection[Location]) -> Iterator[GraphNode]:
+    """Yield the containers of a launch file that are no programs, and the components it loads."""
     launch = making.launch
-    places = {node.location for node in launch.nodes}
     for container in launch.containers:
-        if container.when is not False and container.location not in places:
+        if container.when is not False and container.location not in programs:
             doubt = "" if container.when else _AT_RUN_TIME
             name, at = container.name or "", container.location
             yield GraphNode(name, "a container", "container", at, (), doubt)
@@ -408,59 +421,31 @@ def _controller(
     only: OnlyMore = ""
     if row is not None:
         located = node._replace(location=controller.location)
-        ends = _shown([*ends_of_row(row, located, given, making.release)])
+        ends = _shown([*_ends_of_controller(making, row, located, given)])
         opens_more, only = row.opens_more, row.opens_only
     at, shown = controller.location, tuple(ends)
     return GraphNode(name, kind, "controller", at, shown, doubt, opens_more, (), inside, only)
 
 
+def _ends_of_controller(
+    making: _Making, row: OpenedEnds, node: StartedNode, given: NodeParameters
+) -> Iterator[GraphEnd]:
+    """Yield what a controller opens; if no release is stated, what depends on it is not certain."""
+    others: list[set[GraphEnd]] = []
+    for release in () if making.workspace.releases else _USUAL_RELEASES:
+        others.append({*ends_of_row(row, node, given, release)})
+    for end in ends_of_row(row, node, given, making.release):
+        is_certain = all(end in ends for ends in others)
+        yield end if is_certain else end._replace(doubt=end.doubt or _NO_RELEASE)
+
+
 def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterator[GraphNode]:
     """Yield the nodes of included launch files of other packages, and add their processes."""
-    for passed in making.launch.passed:
-        package, file = _included_file(passed)
-        if passed.when is False or making.package.find(package) is not None:
-            continue
-        for included in nodes_of_launch_file(package, file, making.release):
-            owner, _, executable = included.node.partition("/")
-            node = StartedNode(
-                owner,
-                executable,
-                None if passed.when is None else True,
-                passed.location,
-                remaps=_remappings_passed(passed, included),
-                node_name=included.name,
-                parameters=_parameters_passed(passed, included.parameters),
-            )
-            if _is_process(node):
-                processes.append(EndedProcess(included.node, node.location, _find_doubt(node)))
-            else:
-                yield from _known_nodes(making, node, "program")
-
-
-def _remappings_passed(
-    passed: PassedArguments, included: IncludedNode
-) -> tuple[tuple[str, str], ...] | None:
-    """Return the remappings of a node; None if an include passes a name that is not known."""
-    values = dict(passed.values)
-    remaps: list[tuple[str, str]] = []
-    for name, default in included.remappings.items():
-        to = values.get(included.arguments.get(name, ""), default)
-        if to is None:
-            return None
-        remaps.append((name, to))
-    return tuple(remaps)
-
-
-def _parameters_passed(
-    passed: PassedArguments, arguments: Sequence[str]
-) -> tuple[GivenParameters, ...] | None:
-    """Return the parameter files that an include passes; None if not all are known."""
-    values = dict(passed.values)
-    paths = [values.get(name) for name in arguments]
-    known = [path for path in paths if path]
-    if not known or len(known) < len(paths):
-        return None
-    return tuple(GivenParameters(passed.location, path) for path in known)
+    for node in included_nodes(making.workspace, making.package, making.launch):
+        if _is_process(node):
+            processes.append(EndedProcess(node.name, node.location, _find_doubt(node)))
+        else:
+            yield from _known_nodes(making, node, "program")
 
 
 def _plugins(
@@ -494,26 +479,8 @@ def _unread(making: _Making) -> Iterator[Unread]:
         yield Unread(launch.syntax.message, launch.syntax.location)
     elif launch.unread:
         yield Unread(launch.unread, _start(launch))
-    places = {container.location for container in launch.containers}
-    places.update(component.loaded_at for component in launch.components)
+    drawn = {component.loaded_at for component in launch.components}
     for unknown in dict.fromkeys(launch.unknown):
-        if unknown.location not in places:
+        if unknown.location not in drawn:
             yield Unread(unknown.message, unknown.location)
     yield from unread_includes(making.workspace, launch)
-
-
-def unread_includes(workspace: Workspace, launch: Launch) -> Iterator[Unread]:
-    """Yield the included launch files of known packages of which it is not known what they open."""
-    own_packages = {package.name for package in workspace.packages}
-    for passed in launch.passed:
-        package, file = _included_file(passed)
-        is_known = launch_file_is_known(package, file) or file not in package_row(package).launch
-        if passed.when is not False and not is_known and package not in own_packages:
-            reason = f"what {file} of {package} starts is not known"
-            yield Unread(reason, passed.location)
-
-
-def _included_file(passed: PassedArguments) -> tuple[str, str]:
-    """Return the package and the name of an included launch file."""
-    package, _, file = passed.path.rpartition("share/")[2].partition("/launch/")
-    return package, file

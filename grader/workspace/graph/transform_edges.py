@@ -4,11 +4,9 @@ They are what `ros2 run tf2_tools view_frames` would show.
 """
 
 from collections.abc import Iterator, Sequence
-from typing import Any, Literal, NamedTuple
+from typing import Any
 
-from grader.base.source import Location
 from grader.base.text import quoted
-from grader.base.transforms import Transform
 from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
 from grader.ros.known.package_rows import DecidingParameter, find_transforms, package_row
 from grader.ros.launch.launch_model import StartedNode
@@ -25,69 +23,41 @@ from grader.ros.xml.parsing import Element
 from grader.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
 from grader.workspace.graph.code_ends import list_frames
 from grader.workspace.graph.gazebo_topics import name_system, roots
+from grader.workspace.graph.included_nodes import included_nodes
+from grader.workspace.graph.launch_graph import GraphTransform
 from grader.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.workspace.model.workspace import Workspace
 
-_EdgeSource = Literal["robot", "static", "code", "program", "controller", "Gazebo"]
 _TF = "/tf"
 _OF_ROBOT = 100  # parts of searching the plugins of a robot or a world
 _MOVING = ("revolute", "continuous", "prismatic")
 _PUBLISHED = ("publishes", "is above")
 
 
-class Edge(NamedTuple):
-    """A transform that something publishes, or may publish; a frame that is not known is empty.
-
-    `Graph` makes the edges of a workspace. Rules that say that two programs place one frame read
-    those that are certain; rules that say that nothing connects two frames read all.
-    """
-
-    parent: str
-    child: str
-    launch: int  # the number of the launch file that starts what publishes it
-    source: _EdgeSource
-    is_certain: bool
-    by: str
-    location: Location
-    is_static: bool = False
-    pose: Transform | None = None  # T_parent_child, where it never changes and is known
-    # The topics of joint states without which robot_state_publisher does not publish it.
-    needs: tuple[str, ...] = ()
-
-    @property
-    def is_known(self) -> bool:
-        """Whether both frames are known."""
-        return bool(self.parent and self.child)
-
-
 def _edges_of_publishers(
-    workspace: Workspace, launch: int, publishers: Sequence[StartedNode]
-) -> Iterator[Edge]:
+    workspace: Workspace, publishers: Sequence[StartedNode]
+) -> Iterator[GraphTransform]:
     """Yield the joints of the robots that robot_state_publishers of a launch file publish."""
     is_certain = any(not node.frame_prefix and publishes_as_named(node) for node in publishers)
     topics = [node.topic("joint_states") for node in publishers]
     states = tuple(topic for topic in topics if topic is not None)
-    yield from _edges_of_robots(workspace, launch, states, is_certain=is_certain)
+    yield from _edges_of_robots(workspace, states, is_certain=is_certain)
 
 
-def edges_in(workspace: Workspace, launch: int) -> Iterator[Edge]:
+def edges_in(workspace: Workspace, launch: int) -> Iterator[GraphTransform]:
     """Yield the transforms of the nodes and controllers of a launch file. Raises NotDecided."""
     package, file = workspace.launches.roots[launch]
-    workspace.charge(1 + len(file.nodes) + len(file.components))
+    workspace.charge(1 + len(file.nodes))
     publishers = []
-    for component in file.components:
-        loaded = component.node if component.when is not False else None
-        if loaded is not None and loaded.is_state_publisher:
-            publishers.append(loaded)
-    for node in file.nodes:
+    for node in (*file.nodes, *included_nodes(workspace, package, file)):
         if node.is_state_publisher:
             publishers.append(node)
         else:
-            yield from _published_by(workspace, launch, package, node)
+            yield from _published_by(workspace, package, node)
         if package_row(node.package).publishes_transforms or node.frame_prefix != "":
-            yield Edge("", "", launch, "program", False, node.executable, node.location)
+            yield GraphTransform("", "", "program", False, node.executable, node.location)
     if publishers:
-        yield from _edges_of_publishers(workspace, launch, publishers)
+        yield from _edges_of_publishers(workspace, publishers)
     yield from _broadcast_by_controllers(workspace, launch)
 
 
@@ -101,20 +71,19 @@ def is_zero_rotation(node: StartedNode) -> bool:
 
 
 def _published_by(
-    workspace: Workspace, launch: int, package: Package, node: StartedNode
-) -> Iterator[Edge]:
+    workspace: Workspace, package: Package, node: StartedNode
+) -> Iterator[GraphTransform]:
     """Yield the transforms that a node publishes, but for those of the robot."""
     program = (node.package, node.executable)
     if program == (BRIDGE, "parameter_bridge"):
-        yield from _broadcast_by_gazebo(workspace, launch, node)
+        yield from _broadcast_by_gazebo(workspace, node)
     elif program == STATIC_PUBLISHER:
         parent, child = frames_named(node)
         pose = static_pose(node)
         is_certain = publishes_as_named(node) and not has_zero_rotation(node)
-        yield Edge(
+        yield GraphTransform(
             parent or "",
             child or "",
-            launch,
             "static",
             is_certain,
             node.executable,
@@ -123,23 +92,23 @@ def _published_by(
             pose=pose,
         )
     else:
-        yield from _edges_of_code(workspace, launch, node)
+        yield from _edges_of_code(workspace, node)
         if find_transforms("/".join(program)):
             given = workspace.parameters.given_to(package, node)
             for parent, child in _broadcast("/".join(program), given):
                 is_certain = publishes_as_named(node)
                 by, at = node.executable, node.location
-                yield Edge(parent, child, launch, "program", is_certain, by, at)
+                yield GraphTransform(parent, child, "program", is_certain, by, at)
 
 
 def publishes_as_named(node: StartedNode) -> bool:
     """Return whether a node is started for certain, and publishes on /tf."""
-    if node.when is not True or node.namespace or node.remaps is None:
+    if node.when is not True or node.remaps is None:
         return False
     return not any("tf" in rule[0] for rule in node.remaps)
 
 
-def _edges_of_code(workspace: Workspace, launch: int, node: StartedNode) -> Iterator[Edge]:
+def _edges_of_code(workspace: Workspace, node: StartedNode) -> Iterator[GraphTransform]:
     """Yield the transforms of own code.
 
     Which of its frames is in which one is not known: each is connected with the first.
@@ -148,12 +117,12 @@ def _edges_of_code(workspace: Workspace, launch: int, node: StartedNode) -> Iter
     for name, frame in list_frames(workspace, node):
         if frame.use in _PUBLISHED:
             first = first or name or ""
-            yield Edge(first, name or "", launch, "code", False, node.executable, frame.location)
+            yield GraphTransform(first, name or "", "code", False, node.executable, frame.location)
 
 
 def _edges_of_robots(
-    workspace: Workspace, launch: int, states: tuple[str, ...], *, is_certain: bool
-) -> Iterator[Edge]:
+    workspace: Workspace, states: tuple[str, ...], *, is_certain: bool
+) -> Iterator[GraphTransform]:
     """Yield the joints of the robots, which robot_state_publisher publishes.
 
     `states` are the topics of the states of joints that move.
@@ -168,10 +137,9 @@ def _edges_of_robots(
             pose = None
             if joint.type == "fixed" and joint.origin is not None:
                 pose = joint.origin.placed_in()
-            yield Edge(
+            yield GraphTransform(
                 joint.parent,
                 joint.child,
-                launch,
                 "robot",
                 is_certain and is_one,
                 f"the joint {quoted(joint.name)} of the robot",
@@ -182,7 +150,7 @@ def _edges_of_robots(
             )
 
 
-def _broadcast_by_controllers(workspace: Workspace, launch: int) -> Iterator[Edge]:
+def _broadcast_by_controllers(workspace: Workspace, launch: int) -> Iterator[GraphTransform]:
     """Yield the transforms of the controllers that a launch file spawns."""
     spawned = spawned_controllers(workspace, launch)
     for controller in defined_controllers(workspace):
@@ -192,10 +160,10 @@ def _broadcast_by_controllers(workspace: Workspace, launch: int) -> Iterator[Edg
         if len(gifts) == 1:
             for parent, child in _broadcast(controller.type.text or "", gifts[0]):
                 by, at = controller.name, controller.location
-                yield Edge(parent, child, launch, "controller", True, by, at)
+                yield GraphTransform(parent, child, "controller", True, by, at)
 
 
-def _broadcast_by_gazebo(workspace: Workspace, launch: int, bridge: StartedNode) -> Iterator[Edge]:
+def _broadcast_by_gazebo(workspace: Workspace, bridge: StartedNode) -> Iterator[GraphTransform]:
     """Yield the transforms of systems of Gazebo that a bridge publishes on /tf.
 
     The systems are those that name their frames.
@@ -215,7 +183,7 @@ def _broadcast_by_gazebo(workspace: Workspace, launch: int, bridge: StartedNode)
             if frames is not None:
                 is_certain = bridge.when is True
                 by = f"the system {name_system(plugin)} of Gazebo"
-                yield Edge(*frames, launch, "Gazebo", is_certain, by, place(plugin))
+                yield GraphTransform(*frames, "Gazebo", is_certain, by, place(plugin))
 
 
 def frames_of_system(plugin: Element) -> tuple[str, str] | None:

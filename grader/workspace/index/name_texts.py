@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from grader.base.errors import NotDecided
-from grader.workspace.graph.started_graph import started_graph
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.index.written_names import WrittenName
 from grader.workspace.model.workspace import Workspace
 
@@ -26,8 +26,8 @@ def list_texts(workspace: Workspace, name: WrittenName) -> Iterator[str]:
 
 def _ends(workspace: Workspace, full: str) -> Iterator[str]:
     """Yield the nodes that have an end of a full name after a launch."""
-    for number in range(len(workspace.launches.roots)):
-        for node in started_graph(workspace, number).nodes:
+    for graph in make_graph(workspace).launched:
+        for node in graph.nodes:
             for end in node.ends:
                 if end.name == full:
                     kind = f" ({end.type})" if end.type else ""

@@ -19,10 +19,10 @@ from grader.ros.nodes.node_facts import NodeFacts, NodeFrame
 from grader.workspace.graph.bridge_rows import BridgeRow, bridge_rows
 from grader.workspace.graph.code_ends import End, opened_by_code
 from grader.workspace.graph.gazebo_topics import gazebo_topics
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.graph.launch_graph import PART_UNKNOWN, GraphEnd, LaunchGraph
 from grader.workspace.graph.rviz_ends import ends_of_displays
 from grader.workspace.graph.started_controllers import defined_controllers
-from grader.workspace.graph.started_graph import started_graph
 from grader.workspace.index.written_names import (
     Role,
     Span,
@@ -87,8 +87,7 @@ class GraphNames:
     @cached_property
     def graphs(self) -> Sequence[LaunchGraph]:
         """The graph of each launch file that no other one includes."""
-        count = len(self._workspace.launches.roots)
-        return [started_graph(self._workspace, number) for number in range(count)]
+        return make_graph(self._workspace).launched
 
     @cached_property
     def _nodes(self) -> Mapping[str, str]:
@@ -194,7 +193,7 @@ class GraphNames:
     def _own_nodes(self) -> Iterator[tuple[StartedNode, NodeFacts, int]]:
         """Yield the nodes of own code as they are started, also where no launch file does so."""
         code, launched = self._workspace.code, set[tuple[str, str]]()
-        for number, node in self._started_programs():
+        for number, node in self._workspace.launches.launched:
             owner = self._workspace.find_package(node)
             if owner is not None:
                 launched.add((owner.name, node.executable))
@@ -206,14 +205,6 @@ class GraphNames:
                     started = StartedNode(package, program.name, True, program.location)
                     for facts in program.nodes:
                         yield started, facts, -1
-
-    def _started_programs(self) -> Iterator[tuple[int, StartedNode]]:
-        """Yield the nodes and components, each with the number of its launch file."""
-        yield from self._workspace.launches.launched
-        for number, (_, launch) in enumerate(self._workspace.launches.roots):
-            for component in launch.components:
-                if component.node is not None:
-                    yield number, component.node
 
     def _end_of_code(self, end: End, facts: NodeFacts) -> _Names:
         """Yield the name of an end where code writes it, or the parameter that has it."""

@@ -6,8 +6,8 @@ from contextlib import suppress
 from fnmatch import fnmatchcase
 
 from grader.base.errors import NotDecided
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.graph.launch_graph import LaunchGraph, unconnected_ends
-from grader.workspace.graph.started_graph import started_graph
 from grader.workspace.index.names_in_graph import ComputedName
 from grader.workspace.index.written_names import WrittenName
 from grader.workspace.model.workspace import Workspace
@@ -44,8 +44,7 @@ def open_ends(workspace: Workspace, places: Collection[WrittenName]) -> Iterator
     """
     names = {(place.kind, place.owner) for place in places if place.kind in _ENDS}
     with suppress(NotDecided):
-        for number in range(len(workspace.launches.roots)) if names else ():
-            graph = started_graph(workspace, number)
+        for graph in make_graph(workspace).launched if names else ():
             alone = {(end.carrier, end.name) for end in unconnected_ends(graph)}
             for kind, name in names.intersection(alone):
                 for node in graph.nodes:
@@ -85,8 +84,8 @@ def graph_under(
     rows: Counter[_Row] = Counter()
     name = _renaming(places, new)
     try:
-        for number in range(len(workspace.launches.roots)):
-            rows.update(_rows(started_graph(workspace, number), name, others, number))
+        for number, graph in enumerate(make_graph(workspace).launched):
+            rows.update(_rows(graph, name, others, number))
     except NotDecided:
         rows.clear()
     return rows

@@ -71,8 +71,7 @@ class GivenFiles:
                 if self.code.find_name(node) == MANAGER:
                     shared += node.parameters or ()
             shared += self.robots.given_in_gazebo
-            loaded = (component.node for component in launch.components)
-            for node in (*launch.nodes, *filter(None, loaded)):
+            for node in launch.nodes:
                 for name, given in _given_by(self, package, node, shared):
                     owners.setdefault(name, []).append(given)
         return owners

@@ -73,18 +73,16 @@ class Launches:
     def roots(self) -> tuple[tuple[Package, Launch], ...]:
         """The launch files that no other one includes, or the only one that is asked for.
 
-        Each is with its package.
+        Each is with its package, and has its components among its nodes.
         """
-        if self.only:
-            files = [(package, file) for package, _, file in self.files]
-            return tuple(pair for pair in files if pair[1].source.path == self.only)
         included: set[str] = set()
         for _, _, launch in self.files:
             included |= {passed.path for passed in launch.passed}
         root_launches = []
         for package, path, launch in self.files:
-            if included.isdisjoint(self.find_targets(package, path)):
-                root_launches.append((package, launch))
+            is_root = included.isdisjoint(self.find_targets(package, path))
+            if launch.source.path == self.only if self.only else is_root:
+                root_launches.append((package, launch.with_components()))
         return tuple(root_launches)
 
     def find_targets(self, package: Package, source: str) -> Sequence[str]:
@@ -107,7 +105,7 @@ class Launches:
     @cached_property
     def has_more_nodes(self) -> bool:
         """Whether launch files may start more than is known."""
-        return any(launch.more for _, _, launch in self.files)
+        return any(launch.with_components().more for _, _, launch in self.files)
 
     @cached_property
     def unknown_includes(self) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 
+from grader.ros.known.end_rows import opened_ends
 from grader.ros.known.package_rows import children_by_node, program_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.nodes.node_facts import NodeFacts, PackageNodes
@@ -11,6 +12,7 @@ from grader.ros.nodes.python.python_nodes import read_nodes
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.package_interfaces import PackageInterfaces, read_interfaces
 from grader.ros.package.program_names import surely_meant_program
+from grader.ros.package.static_transforms import STATIC_PUBLISHER
 from grader.workspace.model.installed_yaml import InstalledFiles
 from grader.workspace.model.launches import MANAGER
 from grader.workspace.model.text_files import MAX_YAML
@@ -147,7 +149,11 @@ class OwnCode:
         facts = self.own_node(node)
         if facts is not None:
             return facts.name
-        return program_row(node.package, node.executable).name
+        if (node.package, node.executable) == STATIC_PUBLISHER:
+            return None  # it ends in random letters
+        name = program_row(node.package, node.executable).name
+        row = opened_ends(node.package, node.executable)
+        return name or (row.name if row is not None else "") or None
 
     def find_children(self, name: str) -> frozenset[str]:
         """Return the nodes that a node of another package makes in its process.

@@ -21,7 +21,7 @@ from grader.ros.launch.launch_model import Launch, PassedArguments, StartedNode
 from grader.ros.urdf.model import Joint
 from grader.workspace.graph.bridge_rows import BRIDGE, are_rows_known, bridge_rows
 from grader.workspace.graph.graph import make_graph
-from grader.workspace.graph.running_nodes import RunningNode
+from grader.workspace.graph.launch_graph import GraphNode
 from grader.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.workspace.graph.unread_ends import may_publish_type
 from grader.workspace.model.launches import CONTROL_NODE, MANAGER
@@ -46,6 +46,7 @@ _LOOSE = (*_PAGES, ".rst", ".txt", ".yaml", ".yml", "Dockerfile")  # outside of 
 _SOURCES = (*_CODE, *_PAGES, ".yaml")
 # Launch files that start Gazebo or a part of it, and no bridge.
 _OF_GAZEBO = ("gz_sim.launch.py", "gz_server.launch.py", "gz_spawn_model.launch.py")
+_GAZEBO = ("gz sim", "ign gazebo")  # processes that open no topic of ROS
 _BRIDGES = (BRIDGE, "ros_ign_bridge")
 _WORD = re.compile(r"[a-z0-9]+")
 
@@ -90,16 +91,23 @@ Node(package='turtlesim', executable='turtlesim_node', name='sim2'),
 
 def _same_names(workspace: Workspace) -> Mismatches:
     """Yield the nodes that a launch file gives a name which it gives another one."""
-    first: dict[tuple[int, str], RunningNode] = {}
-    for node in make_graph(workspace).nodes:
-        process = node.process if node.kind == "program" else None
-        if process is None or not process.node_name or node.when is not True or not node.name:
-            continue
-        before = first.setdefault((node.launch, node.name), node)
-        if before.process is not process:
+    for graph, (_, launch) in zip(
+        make_graph(workspace).launched, workspace.launches.roots, strict=True
+    ):
+        named = {node.location for node in launch.nodes if node.node_name}
+        first: dict[str, GraphNode] = {}
+        for node in graph.nodes:
+            if node.location not in named or node.doubt or not node.name:
+                continue
+            before = first.setdefault(node.name, node)
+            if before is node:
+                continue
+            other = f"the other one is at {before.location.file_and_line}"
+            if node.process is not None and before.process == node.process:
+                other = f"the name is for both nodes of {node.program}"
             message = (
                 f"two nodes are named {node.name}: their parameters and services cannot be told "
-                f"apart; the other one is at {before.location.file_and_line}"
+                f"apart; {other}"
             )
             yield warning(_NODE_NAME, message, node.location, before.location)
 
@@ -293,9 +301,12 @@ def _no_robot(workspace: Workspace) -> Mismatches:
 
 
 def _sim_time(workspace: Workspace) -> Iterator[Location]:
-    """Yield where nodes that are started are told to use the time of a simulation."""
+    """Yield where nodes that are started are told to use the time of a simulation.
+
+    robot_state_publisher sends what it gets, whatever the time is.
+    """
     for node, value in make_graph(workspace).given(_TIME):
-        if node.when is True and value.value is True:
+        if node.when is True and value.value is True and node.executable != _ROBOT_PUBLISHER:
             yield value.location
 
 
@@ -342,10 +353,13 @@ def _may_have_clock(workspace: Workspace) -> bool:
 
 
 def _starts_gazebo(workspace: Workspace) -> bool:
-    """Return whether a launch file starts Gazebo by a file that starts nothing else."""
-    return any(
-        _is_of_gazebo(passed) for _, launch in workspace.launches.roots for passed in launch.passed
-    )
+    """Return whether a launch file starts Gazebo by a command, or a file that starts no more."""
+    for _, launch in workspace.launches.roots:
+        if any(command.startswith(_GAZEBO) for command in launch.commands):
+            return True
+        if any(map(_is_of_gazebo, launch.passed)):
+            return True
+    return False
 
 
 def _is_of_gazebo(passed: PassedArguments) -> bool:
@@ -369,7 +383,7 @@ def _may_bridge_clock(workspace: Workspace) -> bool:
 
 def _may_start_clock(workspace: Workspace, launch: Launch) -> bool:
     """Return whether a command or an included launch file may start a simulation."""
-    ending = (*ros_machine().ending_commands, *commands_that_end())
+    ending = (*ros_machine().ending_commands, *commands_that_end(), *_GAZEBO)
     if not all(command.startswith(ending) for command in launch.commands):
         return True
     for passed in launch.passed:

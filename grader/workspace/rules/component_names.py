@@ -12,7 +12,6 @@ from grader.base.text import quoted
 from grader.ros.installation.installation import Installation
 from grader.ros.launch.launch_model import Launch, LoadedComponent
 from grader.ros.package.package import Package
-from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
@@ -38,9 +37,10 @@ _OTHER_WAY = "ament_index_register_resource"
 
 def component_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield components that nothing registers, and containers that nothing starts."""
-    for package, component in make_graph(workspace).components():
-        yield from _unregistered(workspace, package, component)
-    for _, launch in workspace.launches.roots:
+    for package, launch in workspace.launches.roots:
+        workspace.charge(1 + len(launch.components))
+        for component in launch.components:
+            yield from _unregistered(workspace, package, component)
         yield from _no_container(workspace, launch)
 
 
@@ -187,6 +187,8 @@ def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | N
     if not containers or _may_start_others(workspace, launch):
         return None
     for node in launch.nodes:
+        if node.is_component:
+            continue
         is_named = node.node_name and node.namespace is not None
         may_be = node.package == _CONTAINERS or workspace.find_package(node) is not None
         if may_be and not is_named:
@@ -198,8 +200,6 @@ def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | N
 
 def _may_start_others(workspace: Workspace, launch: Launch) -> bool:
     """Return whether a launch file may start containers that are not known."""
-    places = {container.location for container in launch.containers}
-    places |= {component.loaded_at for component in launch.components}
-    if any(unknown.location not in places for unknown in launch.unknown):
-        return True
-    return not all(workspace.installed.has_file(passed.path) for passed in launch.passed)
+    return bool(launch.unknown) or not all(
+        workspace.installed.has_file(passed.path) for passed in launch.passed
+    )

@@ -48,13 +48,13 @@ def _launch_problems(workspace: Workspace) -> Iterator[Problem]:
 
     A missing program is also a name that does not agree.
     """
-    roots = {id(launch) for _, launch in workspace.launches.roots}
+    roots = {launch.source.path for _, launch in workspace.launches.roots}
     mismatches = read_agreement(workspace).mismatches
     wrong_programs = {each.location for each in mismatches if each.family == "programs"}
     for _, path, launch in workspace.launches.files:
         if launch.syntax is not None:
             yield launch_syntax(launch, launch.syntax)
-        is_root = id(launch) in roots
+        is_root = launch.source.path in roots
         hard_coded: set[Location] = set()  # where paths of one machine are written
         for problem in launch_problems(_started(workspace, path, launch)) if is_root else ():
             if problem.kind is kinds.HARD_CODED:

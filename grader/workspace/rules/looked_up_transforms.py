@@ -1,6 +1,7 @@
 """Transforms that own nodes look up between frames that are there, and that nothing connects."""
 
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 from grader.base.source import Location
@@ -17,12 +18,22 @@ from grader.workspace.rules.rule_table import (
     Rule,
 )
 
+_FILTERS = ("robot_localization/ekf_node", "robot_localization/ukf_node")
+# The parameters with their frames, and the defaults of these.
+_FRAMES = (
+    ("world_frame", "odom"),
+    ("map_frame", "map"),
+    ("odom_frame", "odom"),
+    ("base_link_frame", "base_link"),
+)
+
 
 class _Lookup(NamedTuple):
     """A transform that a node looks up."""
 
     frames: tuple[str, str]
     location: Location
+    known: tuple[str, ...] = ()  # programs of which all transforms are known
 
 
 class _Trees:
@@ -86,12 +97,12 @@ def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
     lookups = [*_lookups(workspace)]
     if not lookups or any(fact.kind == "frame" for fact in openings(workspace)):
         return
-    trees = _published(workspace)
-    if trees is None:
-        return
-    yield Compared("transforms")
     for lookup in lookups:
         target, source = lookup.frames
+        trees = _published(workspace, lookup.known)
+        if trees is None:
+            continue
+        yield Compared("transforms")
         if trees.are_apart(target, source):
             message = (
                 f"nothing that is started connects {quoted(target)} and {quoted(source)}, so this "
@@ -102,10 +113,21 @@ def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
 
 
 def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
-    """Yield what nodes that are certainly started look up, where both frames are known."""
-    for _, node in workspace.launches.nodes:
+    """Yield what nodes that are certainly started look up, where both frames are known.
+
+    A filter of robot_localization in the map needs the odometry of another source: ros_filter.cpp.
+    """
+    for package, node in workspace.launches.nodes:
         if node.when is not True:
             continue
+        if node.name in _FILTERS:
+            parameters = workspace.parameters.given_to(package, node)
+            given = parameters.values
+            frames = [given[name].value if name in given else default for name, default in _FRAMES]
+            is_in_map = frames[0] == frames[1] and "world_frame" in given
+            if is_in_map and not parameters.unknown:
+                looked_up = (str(frames[2]), str(frames[3]))
+                yield _Lookup(looked_up, given["world_frame"].location, (node.executable,))
         by_call: dict[Location, list[str]] = {}
         for name, frame in list_frames(workspace, node):
             if frame.lookup is not None:
@@ -115,8 +137,12 @@ def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
                 yield _Lookup((names[0], names[1]), at)
 
 
-def _published(workspace: Workspace) -> _Trees | None:
-    """Return what launch files publish, whatever conditions say; None where that is not known."""
+@lru_cache(maxsize=4)
+def _published(workspace: Workspace, known: tuple[str, ...]) -> _Trees | None:
+    """Return what launch files publish, whatever conditions say; None where that is not known.
+
+    Of some programs all is known.
+    """
     systems = gazebo().odometry_systems
     if any(
         name_system(plugin) in systems
@@ -127,6 +153,8 @@ def _published(workspace: Workspace) -> _Trees | None:
     trees = _Trees()
     for edge in make_graph(workspace).edges:
         if not edge.is_known:
+            if edge.by in known:
+                continue
             return None
         trees.connect(edge.parent.removeprefix("/"), edge.child.removeprefix("/"))
     return trees

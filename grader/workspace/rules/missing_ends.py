@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.base.names import closest
+from grader.base.names import closest, is_misspelling
 from grader.base.source import Location
 from grader.ros.known.shared_names import shared_names
 from grader.workspace.graph.bridge_rows import BRIDGE, bridge_rows
@@ -111,11 +111,14 @@ self.create_subscription(Twist, 'cmd_vel', self.receive, 10)
 def _similar_topic(workspace: Workspace, end: End, alike: Sequence[_Offer]) -> Facts:
     """Yield the topic that a subscription surely means, of those of its type.
 
-    Else yield that it uses its own, to which a similar name may be a correction.
+    Else yield that it uses its own, to which a similar name may be a correction. Names that differ
+    in a whole word are of two things: hardware may have the other end of each.
     """
     workspace.charge(len(alike))
     places = {offer.topic: offer.location for offer in alike if offer.launch == end.launch}
     meant = closest(end.name, places)
+    if meant is not None and not is_misspelling(end.name, meant):
+        return
     is_one = len(places) == 1 or is_own_type(workspace, end.type)
     if meant is None or not is_one or _may_be_published(workspace, end):
         yield Use("topic", end.name, end.location, "create_subscription")
@@ -160,13 +163,16 @@ def _without_subscription(
     the same name may be meant for a controller of Gazebo in another namespace.
     """
     of_code = [end for end in publishers if end.source == "code"]
-    subscribed = {end.name for end in subscriptions}
-    published = {end.name for end in of_code}
+    subscribed = {end.name for end in subscriptions} | graph.names_read
     unheard = [end for end in of_code if end.name not in subscribed]
     named: set[Location] = set()
     for waiting in subscriptions:
-        if waiting.source == "controller" and waiting.name not in published:
-            yield from _meant_for(graph, waiting, unheard, named)
+        launches = {end.launch for end in of_code if end.name == waiting.name}
+        if waiting.source == "controller" and waiting.launch not in launches:
+            meant = unheard
+            if launches:  # a person may start another one, which feeds it
+                meant = [end for end in unheard if is_misspelling(end.name, waiting.name)]
+            yield from _meant_for(graph, waiting, meant, named)
 
 
 def _meant_for(

@@ -67,11 +67,12 @@ _PROGRAM_EXISTS = Rule(
 
 def program_facts(workspace: Workspace) -> Facts:
     """Yield the programs that launch files start and no package has, and unstarted nodes."""
-    started = {(node.package, node.executable) for _, node in workspace.launches.nodes}
+    nodes = [pair for pair in workspace.launches.nodes if not pair[1].is_component]
+    started = {(node.package, node.executable) for _, node in nodes}
     for package in workspace.packages:
         yield from _entry_points(workspace, package)
         yield from _unstarted_scripts(package, started)
-    for package, node in workspace.launches.nodes:
+    for package, node in nodes:
         if not workspace.folder.means_one(package, node.package):
             yield Undecided("programs", f"several packages are named {node.package!r}")
             continue

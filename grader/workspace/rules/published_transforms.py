@@ -3,13 +3,16 @@
 A frame has one parent, which one program publishes; and frames form a tree.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from math import hypot
 
 from grader.base.text import quoted
 from grader.base.transforms import minus, turn_between
-from grader.workspace.graph.graph import grouped, make_graph
-from grader.workspace.graph.transform_edges import Edge, is_zero_rotation
+from grader.workspace.graph.launch_graph import GraphTransform
+from grader.workspace.graph.launched_transforms import transforms_in
+from grader.workspace.graph.transform_edges import is_zero_rotation
+from grader.workspace.model.text_files import MAX_YAML
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
@@ -18,7 +21,12 @@ from grader.workspace.rules.rule_table import (
     Rule,
 )
 
+_LETTERS_A_PART = 1_000  # that are searched for a switch
 _SAME_PLACE, _SAME_ANGLE = 1e-3, 0.1  # metres, degrees
+# A parameter, or an attribute that is named as a switch: self.publish_tf.
+_SWITCH = re.compile(
+    r"get_parameter|(?:publish|broadcast|send|enable|use)\w{0,20}_(?:tf|transform|odom)"
+)
 
 
 _TRANSFORM_ROTATION = Rule(
@@ -51,20 +59,30 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
             )
             yield Mismatch(_TRANSFORM_ROTATION, message, node.location)
     has_robots = len(workspace.robots.known) > 1  # of which one may run in Gazebo
-    certain = [edge for edge in make_graph(workspace).edges if edge.is_certain]
-    for of_launch in grouped(certain, lambda edge: edge.launch).values():
-        edges: list[Edge] = []
-        joints: dict[str, Edge] = {}
-        for edge in of_launch:
-            if edge.source == "robot":
+    for number in range(len(workspace.launches.roots)):
+        edges: list[GraphTransform] = []
+        joints: dict[str, GraphTransform] = {}
+        for edge in transforms_in(workspace, number):
+            if edge.source == "robot" and edge.is_certain:
                 joints[edge.child] = edge
-            elif edge.is_known and not (edge.source == "Gazebo" and has_robots):
+            elif _is_switched(workspace, edge):
+                continue
+            elif edge.is_certain and edge.is_known and not (edge.source == "Gazebo" and has_robots):
                 edges.append(edge)
         if edges:
             yield Compared("transforms")
         yield from _owned_twice(edges)
         yield from _children_of_robot(edges, joints)
         yield from _cycles([*edges, *joints.values()])
+
+
+def _is_switched(workspace: Workspace, edge: GraphTransform) -> bool:
+    """Return whether code may send a transform or not, as a parameter or an attribute says."""
+    if edge.source != "code":
+        return False
+    text = (workspace.tree.read(edge.location.path, MAX_YAML) or b"").decode(errors="replace")
+    workspace.charge(1 + len(text) // _LETTERS_A_PART)
+    return any("if" in line and _SWITCH.search(line) for line in text.splitlines())
 
 
 _TRANSFORM_OWNER = Rule(
@@ -90,12 +108,12 @@ Node(
 )
 
 
-def _owned_twice(edges: Sequence[Edge]) -> Iterator[Mismatch]:
-    """Yield the frames that a second program places; two equal static transforms are one."""
-    first: dict[str, Edge] = {}
+def _owned_twice(edges: Sequence[GraphTransform]) -> Iterator[Mismatch]:
+    """Yield the frames that a second program places; two static transforms of a pair are one."""
+    first: dict[str, GraphTransform] = {}
     for edge in edges:
         before = first.setdefault(edge.child, edge)
-        if before.location == edge.location or (before.is_static and edge.is_static):
+        if _are_one(before, edge):
             continue
         if before.parent == edge.parent:
             message = (
@@ -111,12 +129,21 @@ def _owned_twice(edges: Sequence[Edge]) -> Iterator[Mismatch]:
         yield warning(_TRANSFORM_OWNER, message, edge.location, before.location)
 
 
-def _children_of_robot(edges: Sequence[Edge], joints: Mapping[str, Edge]) -> Iterator[Mismatch]:
+def _are_one(one: GraphTransform, other: GraphTransform) -> bool:
+    """Return whether two transforms are of one program, or static ones of one pair of frames."""
+    if one.location == other.location or (other.source == "code" and one.by == other.by):
+        return True
+    return one.parent == other.parent and one.is_static and other.is_static
+
+
+def _children_of_robot(
+    edges: Sequence[GraphTransform], joints: Mapping[str, GraphTransform]
+) -> Iterator[Mismatch]:
     """Yield the programs that place a link of the robot which a joint places."""
     for edge in edges:
         joint = joints.get(edge.child)
-        if joint is None:
-            continue
+        if joint is None or (edge.source == "code" and joint.needs):
+            continue  # where nothing publishes the states of joints, code may do the work of these
         if edge.is_static:  # with another parent it is a mistake of frames
             yield from _elsewhere(edge, joint)
             continue
@@ -124,7 +151,8 @@ def _children_of_robot(edges: Sequence[Edge], joints: Mapping[str, Edge]) -> Ite
             f"{edge.by} publishes {quoted(edge.child)} in {quoted(edge.parent)}, but {joint.by} "
             f"places it in {quoted(joint.parent)}: a frame has one parent"
         )
-        yield Mismatch(_TRANSFORM_OWNER, message, edge.location, joint.location)
+        is_certain = edge.source != "code"
+        yield Mismatch(_TRANSFORM_OWNER, message, edge.location, joint.location, is_certain)
 
 
 _STATIC_POSE = Rule(
@@ -154,7 +182,7 @@ Node(package='tf2_ros', executable='static_transform_publisher',
 )
 
 
-def _elsewhere(edge: Edge, joint: Edge) -> Iterator[Mismatch]:
+def _elsewhere(edge: GraphTransform, joint: GraphTransform) -> Iterator[Mismatch]:
     """Yield that a static transform places a link elsewhere than its fixed joint."""
     if edge.parent != joint.parent or edge.pose is None or joint.pose is None:
         return
@@ -193,7 +221,7 @@ Node(package='tf2_ros', executable='static_transform_publisher',
 )
 
 
-def _cycles(edges: Sequence[Edge]) -> Iterator[Mismatch]:
+def _cycles(edges: Sequence[GraphTransform]) -> Iterator[Mismatch]:
     """Yield the cycles of frames, each once, at a transform that the robot does not have."""
     above = {edge.child: edge for edge in edges}
     seen: set[str] = set()

@@ -4,9 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from grader.base.text import enumerated
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.nodes.node_facts import EndpointKind
-from grader.workspace.graph.bridge_rows import bridge_rows
-from grader.workspace.graph.code_ends import END_SOURCES, opened_by
+from grader.workspace.graph.code_ends import opened_by
 from grader.workspace.graph.graph import Graph, make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Counted, Definition, Fact, Use
@@ -78,8 +76,8 @@ def _count(graph: Graph) -> Counted:
 
     A node, a controller, a bridge or a well-known program opens the other end.
     """
-    ends = {"publisher": _names_opened(graph, "subscription")}
-    ends["subscription"] = _names_opened(graph, "publisher")
+    ends = {"publisher": graph.names_opened("subscription")}
+    ends["subscription"] = graph.names_opened("publisher")
     total, known, compared = 0, 0, 0
     for end in graph.ends:
         if end.source == "code" and end.kind in ends:
@@ -94,18 +92,6 @@ def _count(graph: Graph) -> Counted:
     if unread:
         reasons.append(f"the source of {enumerated(unread, _MAX_NAMED)} is not read")
     return Counted("topics", compared, total, ", and ".join(reasons))
-
-
-def _names_opened(graph: Graph, kind: EndpointKind) -> set[str]:
-    """Return the topics that something opens in one way.
-
-    This includes the rows of bridges that nothing starts.
-    """
-    names = {end.name for end in graph.of_kind(kind, sources=END_SOURCES)}
-    for row in bridge_rows(graph.workspace):
-        if row.is_published if kind == "publisher" else row.is_read:
-            names.add(f"/{row.ros}")
-    return names
 
 
 def _unread_programs(workspace: Workspace) -> list[str]:

@@ -28,22 +28,23 @@ def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
 
     The launch file renames the node: rcl compares the new name, so the node gets none of them.
 
-    What components get is not evaluated; a container gives them the files that it gets itself. The
-    nodes of a launch file to which a file is passed may read its sections.
+    A container gives its components the files that it gets itself, and so may an action whose
+    components are not known. The nodes of a launch file to which a file is passed may read its
+    sections.
     """
-    with_components: set[int] = set()
+    with_unknown: set[int] = set()
     for launch, (_, root) in enumerate(workspace.launches.roots):
-        if any(component.has_parameters for component in root.components):
-            with_components.add(launch)
+        if any(component.node is None for component in root.components):
+            with_unknown.add(launch)
     for (path, launch), nodes in _nodes_by_file(workspace).items():
         tree, others = workspace.installed.yaml.get(path), workspace.parameters.files[path]
         workspace.charge(len(others))
         has_container = any(package_row(node.package).holds_nodes for node in others)
         is_open = has_container or path in workspace.installed.passed_files
-        if not isinstance(tree, YamlNode) or launch in with_components or is_open:
+        if not isinstance(tree, YamlNode) or launch in with_unknown or is_open:
             continue
         elsewhere = _names_read(workspace, others)
-        if with_components:
+        if with_unknown:
             elsewhere.add(None)
         yield from _unread_sections(workspace, tree, nodes, elsewhere)
 

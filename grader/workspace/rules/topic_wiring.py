@@ -12,6 +12,7 @@ from grader.ros.config.rviz import Display
 from grader.ros.known.package_tables import transport_types
 from grader.workspace.graph.code_ends import End
 from grader.workspace.graph.graph import Graph, make_graph
+from grader.workspace.graph.launch_graph import GraphEnd, GraphNode, LaunchGraph
 from grader.workspace.graph.node_ends import deciding_parameter
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch, warning
@@ -20,7 +21,7 @@ from grader.workspace.rules.rule_table import (
     Rule,
 )
 
-_COMMANDS = ("geometry_msgs.msg.Twist", "geometry_msgs.msg.TwistStamped")
+_COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 _IMAGE = "sensor_msgs.msg.Image"
 
 
@@ -29,7 +30,8 @@ def topic_wiring_facts(workspace: Workspace) -> Iterator[Fact]:
     graph = make_graph(workspace)
     publishers = graph.certain("publisher", "code")
     subscriptions = graph.certain("subscription", "code")
-    yield from _two_commanders(publishers, subscriptions)
+    for launched in graph.launched:
+        yield from _two_commanders(workspace, launched)
     yield from _other_transport(publishers, subscriptions)
     yield from _displays(workspace, publishers)
     yield from _programs(graph)
@@ -57,23 +59,32 @@ self.commands = self.create_publisher(Twist, 'pilot/commands', 10)  # an input o
 )
 
 
-def _two_commanders(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
-    """Yield the topics of commands that two nodes publish, and another one obeys."""
-    obeyed = {(subscription.launch, subscription.name) for subscription in subscriptions}
-    first: dict[tuple[int, str], End] = {}
-    said: set[tuple[int, str]] = set()
-    for each in publishers:
-        key = each.launch, each.name
-        if each.type not in _COMMANDS or key not in obeyed or key in said:
-            continue
-        before = first.setdefault(key, each)
-        if before.node is not each.node:
-            said.add(key)
+def _two_commanders(workspace: Workspace, graph: LaunchGraph) -> Iterator[Mismatch]:
+    """Yield the topics of commands that two nodes of own code publish, and something obeys."""
+    own_packages = {package.name for package in workspace.packages}
+    obeyed: set[str] = set()
+    commands: list[tuple[GraphNode, GraphEnd]] = []
+    for node in graph.nodes:
+        workspace.charge(1 + len(node.ends))
+        is_own = node.program.partition("/")[0] in own_packages
+        for end in node.ends:
+            if node.doubt or end.doubt or end.type not in _COMMANDS:
+                continue
+            if end.kind == "subscription":
+                obeyed.add(end.name)
+            elif is_own:
+                commands.append((node, end))
+    first: dict[str, tuple[GraphNode, GraphEnd]] = {}
+    said: set[str] = set()
+    for node, end in commands:
+        other, before = first.setdefault(end.name, (node, end))
+        if other is not node and end.name in obeyed and end.name not in said:
+            said.add(end.name)
             message = (
-                f"{each.node.executable} and {before.node.executable} both publish {each.name}: "
-                "the robot obeys each in turn; twist_mux chooses one"
+                f"{node.label} and {other.label} both publish {end.name}: the robot obeys each "
+                "in turn; twist_mux chooses one"
             )
-            yield warning(_ONE_COMMANDER, message, each.location, before.location)
+            yield warning(_ONE_COMMANDER, message, end.location, before.location)
 
 
 _IMAGE_TRANSPORT = Rule(

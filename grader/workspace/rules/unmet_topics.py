@@ -4,19 +4,24 @@ They are found only where all of the code is read, as another program may be the
 missed.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from grader.base.names import closest
+from grader.base.names import closest, is_misspelling
 from grader.base.source import Location
+from grader.ros.known.package_rows import package_row
 from grader.ros.known.package_tables import transport_types
 from grader.ros.known.shared_names import shared_names
-from grader.ros.nodes.node_facts import Endpoint
-from grader.workspace.graph.code_ends import END_SOURCES, End
-from grader.workspace.graph.graph import Graph, make_graph
-from grader.workspace.graph.unread_ends import Sought, is_all_read, may_be_opened
+from grader.ros.launch.launch_model import Launch
+from grader.ros.nodes.node_facts import Endpoint, EndpointKind
+from grader.workspace.graph.bridge_rows import BRIDGE
+from grader.workspace.graph.graph import make_graph
+from grader.workspace.graph.launch_graph import OPPOSITES, GraphEnd, GraphNode, LaunchGraph
+from grader.workspace.graph.manual_ends import manual_ends
+from grader.workspace.graph.message_ways import is_named, may_open
+from grader.workspace.graph.unread_ends import Sought, may_be_opened
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.meeting_ends import TOPICS
 from grader.workspace.rules.names import Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
@@ -24,6 +29,10 @@ from grader.workspace.rules.rule_table import (
 )
 
 _OF_ENDPOINT = 2  # parts of an endpoint that is compared
+_SPEEDS, _TEXT = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
+_COMMANDED = (BRIDGE, "gazebo_plugins")  # what they subscribe to is for commands
+_MANAGER = "controller_manager/ros2_control_node"
+_PLAYS = re.compile(r"\bros2\s++(?:topic|bag)\b")  # commands that may publish
 
 
 class _Opened(NamedTuple):
@@ -37,7 +46,10 @@ class _Opened(NamedTuple):
 def unmet_topic_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the topics that connect nothing."""
     yield from _of_unstarted(workspace)
-    yield from _of_one_launch(make_graph(workspace))
+    for graph, (_, launch) in zip(
+        make_graph(workspace).launched, workspace.launches.roots, strict=True
+    ):
+        yield from _of_one_launch(workspace, graph, launch)
 
 
 # --- Programs that no launch file starts
@@ -133,21 +145,84 @@ def _all_topics(workspace: Workspace) -> "Mapping[str, Sequence[_Opened]] | None
 # ----------------------------------------------------------------------
 
 
-def _of_one_launch(graph: Graph) -> Iterator[Mismatch]:
+class _FreeEnd(NamedTuple):
+    """An end that certainly is opened, and that no other node of its launch has a partner for."""
+
+    node: GraphNode
+    end: GraphEnd
+    is_own: bool  # whether code of the workspace opens it
+
+    @property
+    def plain_type(self) -> str:
+        """The type without a stamp."""
+        return self.end.type.removesuffix("Stamped")
+
+    @property
+    def is_usual(self) -> bool:
+        """Whether programs elsewhere open it, by its usual name."""
+        return self.end.name.rpartition("/")[2] in shared_names().topics
+
+    @property
+    def may_be_meant(self) -> bool:
+        """Whether it may be one of two that mean the same topic.
+
+        Those of other programs exist to be commanded; programs elsewhere have the usual names.
+        """
+        if self.plain_type == _SPEEDS:
+            return True
+        package = self.node.program.partition("/")[0]
+        is_commanded = self.node.kind == "controller" or package in _COMMANDED
+        opened = [end.name for end in self.node.ends].count(self.end.name)  # twice: both ways
+        is_meant = self.is_own or (is_commanded and opened == 1)
+        return is_meant and self.end.type != _TEXT and not self.is_usual
+
+
+def _of_one_launch(workspace: Workspace, graph: LaunchGraph, launch: Launch) -> Iterator[Mismatch]:
     """Yield a subscription that nothing publishes, where the only unread topic has its type.
 
-    One launch file certainly starts both nodes, and all that it starts is read.
+    One launch file certainly starts both nodes, and all that it starts is read. Own code has the
+    publisher. It has the subscription too, or a controller, a bridge, a plug-in or a program that
+    exists to be commanded has it.
     """
-    subscriptions, publishers = TOPICS.ends(graph)
-    published = {end.name for end in graph.of_kind("publisher", sources=END_SOURCES)}
-    subscribed = {end.name for end in graph.of_kind("subscription", sources=END_SOURCES)}
-    unheard = [end for end in publishers if _is_free(end, subscribed)]
-    waiting = [end for end in subscriptions if _is_free(end, published)]
+    unheard = [free for free in _free_ends(workspace, graph, "publisher") if free.is_own]
+    if not unheard or _may_open_more(graph):
+        return
+    waiting = [*_free_ends(workspace, graph, "subscription")]
+    workspace.charge(len(waiting) * (len(waiting) + len(unheard)))
     for asking in waiting:
-        rivals = graph.alike(asking, waiting)
-        offering = graph.alike(asking, unheard)
-        if len(rivals) == 1 and len(offering) == 1 and asking.type is not None:
-            yield from _partners(graph.workspace, asking, offering[0])
+        rivals = [free for free in waiting if free.plain_type == asking.plain_type]
+        offering = [free for free in unheard if free.plain_type == asking.plain_type]
+        if len(rivals) == 1 and len(offering) == 1 and asking.node is not offering[0].node:
+            yield from _partners(workspace, launch, graph, asking, offering[0])
+
+
+def _free_ends(workspace: Workspace, graph: LaunchGraph, kind: EndpointKind) -> Iterator[_FreeEnd]:
+    """Yield the ends of a kind that certainly are opened and have no partner in the launch."""
+    own_packages = {package.name for package in workspace.packages}
+    partners: list[tuple[GraphNode, str]] = []
+    for node in graph.nodes:
+        partners += [(node, end.name) for end in node.ends if end.kind == OPPOSITES[kind]]
+    for node in graph.nodes:
+        is_own = node.kind != "controller" and node.program.partition("/")[0] in own_packages
+        for end in node.ends:
+            free = _FreeEnd(node, end, is_own)
+            is_known = end.type and not (node.doubt or end.doubt)
+            if end.kind == kind and is_known and free.may_be_meant:
+                workspace.charge(1 + len(partners))
+                others = [name for other, name in partners if other is not node]
+                if not any(is_named(name, end.name) for name in others):
+                    yield free
+
+
+def _may_open_more(graph: LaunchGraph) -> bool:
+    """Return whether a launch may have ends that are not known."""
+    if graph.unread or any(_PLAYS.search(process.program) for process in graph.processes):
+        return True
+    for node in graph.nodes:
+        without = package_row(node.program.partition("/")[0]).without
+        if may_open(node, ("publisher", "subscription")) and "commands" not in without:
+            return True
+    return False
 
 
 _TOPIC_PARTNER = Rule(
@@ -165,41 +240,71 @@ _TOPIC_PARTNER = Rule(
     beside={
         "meter.py": "",
     },
+    at="rover/meter.py",
 )
 
 
-def _partners(workspace: Workspace, asking: End, offering: End) -> Iterator[Mismatch]:
-    """Yield that the topic of a subscription is meant to be that of a publisher."""
-    if _is_of_other_rule(asking, offering):
-        return
-    if asking.owner != offering.owner and _is_closed(workspace, asking):
-        message = (
-            f"nothing publishes {asking.name}, and nothing subscribes to {offering.name}, "
-            f"which has its type {asking.type} ({offering.location.file_and_line})"
-        )
-        yield warning(_TOPIC_PARTNER, message, asking.location, offering.location)
+def _partners(
+    workspace: Workspace,
+    launch: Launch,
+    graph: LaunchGraph,
+    asking: _FreeEnd,
+    offering: _FreeEnd,
+) -> Iterator[Mismatch]:
+    """Yield that the topic of a subscription is meant to be that of a publisher.
 
-
-def _is_of_other_rule(asking: End, offering: End) -> bool:
-    """Return whether another rule says what is wrong.
-
-    The names are similar, the topic is one of compressed images, or a remapping names another one.
+    Another launch file, or a person, may join either one with others.
     """
-    is_similar = closest(asking.name, [offering.name]) is not None
-    is_compressed = asking.name.rpartition("/")[2] in transport_types()
-    plain = asking.node._replace(remaps=()).topic(asking.endpoint.name or "")
-    is_missed = bool(asking.node.remaps) and plain == asking.name
-    return is_similar or is_compressed or is_missed
+    asked, offered = asking.end, offering.end
+    if _is_of_other_rule(launch, graph, asking, offering):
+        return
+    is_similar = is_misspelling(asked.name, offered.name)
+    is_similar = is_similar or _last(asked.name) == _last(offered.name)
+    joined = make_graph(workspace)
+    is_fed = asked.name in joined.names_opened("publisher") and not is_similar
+    if is_fed or offered.name in joined.names_opened("subscription") | joined.names_read:
+        return
+    sought = Sought("publisher", asked.name, asked.type.replace("/", "."))
+    if asking.is_own and may_be_opened(workspace, sought):
+        return
+    is_of_person = bool(manual_ends([asked])) or not (
+        asking.is_own or asked.type.startswith("geometry_msgs/")
+    )
+    if is_similar or not is_of_person:
+        one = "one name" if asked.type == offered.type else "one name and one type"
+        message = (
+            f"nothing subscribes to {offered.name}, and nothing publishes {asked.name}, on which "
+            f"{asking.node.label} waits for {asked.type} ({asked.location.file_and_line}): give "
+            f"both {one}"
+        )
+        yield warning(_TOPIC_PARTNER, message, offered.location, asked.location)
 
 
-def _is_free(end: End, partners: "set[str]") -> bool:
-    """Return whether an end of a node that certainly is started has no partner."""
-    is_shared = end.name.rpartition("/")[2] in shared_names().topics
-    return end.source == "code" and end.is_certain and end.name not in partners and not is_shared
+def _last(name: str) -> str:
+    return name.rpartition("/")[2]
 
 
-def _is_closed(workspace: Workspace, end: End) -> bool:
-    """Return whether nothing else may publish what an end subscribes to."""
-    if not is_all_read(workspace, end.launch):
-        return False
-    return not may_be_opened(workspace, Sought("publisher", end.name, end.type))
+def _is_of_other_rule(
+    launch: Launch, graph: LaunchGraph, asking: _FreeEnd, offering: _FreeEnd
+) -> bool:
+    """Return whether another rule says what is wrong with two ends, or their types differ.
+
+    Their names are similar, a controller of own code waits for the type, the topic is one of
+    compressed images, or a remapping that should join the two names another topic.
+    """
+    asked = asking.end
+    is_of_type = asked.type == offering.end.type
+    if asking.is_own:
+        is_compressed = _last(asked.name) in transport_types()
+        is_similar = closest(asked.name, [offering.end.name]) is not None
+        is_said = is_compressed or (is_similar and not asking.is_usual) or not is_of_type
+    else:
+        has_manager = any(node.program == _MANAGER for node in graph.nodes)
+        is_said = asking.node.kind == "controller" and is_of_type and has_manager
+    for node in launch.nodes:
+        names = [node.full_name(rule[1]) for rule in node.remaps or ()]
+        if node.location == offering.node.location:
+            is_said = is_said or asked.name in names
+        if node.location == asking.node.location and asking.is_own and names:
+            is_said = is_said or asked.name not in names
+    return is_said

@@ -1,0 +1,82 @@
+"""Nodes with a lifecycle that launch files start, and that nothing configures and activates."""
+
+from collections.abc import Iterator
+
+from grader.workspace.graph.graph import make_graph
+from grader.workspace.graph.lifecycle import (
+    LIFECYCLE_MANAGERS,
+    are_nodes_activated,
+    has_lifecycle,
+)
+from grader.workspace.model.workspace import Workspace
+from grader.workspace.rules.names import Fact, warning
+from grader.workspace.rules.rule_table import NO_COMPANION, Rule
+
+_STARTS_ITSELF = "autostart_node"  # a parameter of the nodes of Nav2
+
+_NODE_ACTIVATED = Rule(
+    "node-activated",
+    "wiring",
+    NO_COMPANION,
+    "Something configures and activates each lifecycle node that a launch file starts.",
+    why=(
+        "The node stays unconfigured: ros2 node list shows it, but it reads and publishes nothing. "
+        "No error is printed."
+    ),
+    wrong="""
+Node(package='nav2_map_server', executable='map_server', name='map_server'),
+Node(package='nav2_lifecycle_manager', executable='lifecycle_manager', name='lifecycle_manager',
+     parameters=[{'autostart': True, 'node_names': ['amcl']}]),
+""",
+    right="""
+Node(package='nav2_map_server', executable='map_server', name='map_server'),
+Node(package='nav2_lifecycle_manager', executable='lifecycle_manager', name='lifecycle_manager',
+     parameters=[{'autostart': True, 'node_names': ['map_server']}]),
+""",
+)
+
+
+def inactive_node_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the lifecycle nodes that certainly are started, and that no manager names.
+
+    An event of a launch file, code or a command may activate any, and so may what is not read. A
+    person may activate an own node, if there is no manager.
+    """
+    nodes = [pair for pair in workspace.launches.nodes if has_lifecycle(workspace, pair[1])]
+    if not nodes or are_nodes_activated(workspace) is not False:
+        return
+    managed = _managed_names(workspace)
+    if managed is None or _may_start_others(workspace):
+        return
+    for package, node in nodes:
+        name = workspace.code.find_name(node)
+        given = workspace.parameters.given_to(package, node)
+        is_open = given.unknown or name is None or _STARTS_ITSELF in given.values
+        is_of_person = not managed and workspace.find_package(node) is not None
+        if node.when is True and not (is_open or is_of_person) and name not in managed:
+            message = (
+                f"nothing configures and activates the lifecycle node {name}: name it in "
+                "node_names of a lifecycle manager"
+            )
+            yield warning(_NODE_ACTIVATED, message, node.location)
+
+
+def _managed_names(workspace: Workspace) -> set[str] | None:
+    """Return the names of the nodes that managers lead; None where not all are known."""
+    managed: set[str] = set()
+    for package, node in workspace.launches.nodes:
+        if node.executable in LIFECYCLE_MANAGERS:
+            given = workspace.parameters.given_to(package, node)
+            names = given.values.get("node_names")
+            if given.unknown or names is None or not isinstance(names.value, list):
+                return None
+            managed.update(str(name).rpartition("/")[2] for name in names.value)
+    return managed
+
+
+def _may_start_others(workspace: Workspace) -> bool:
+    """Return whether a launch starts what is not read, or a command of ROS 2."""
+    for graph in make_graph(workspace).launched:
+        if graph.unread or any(process.program.startswith("ros2 ") for process in graph.processes):
+            return True
+    return False
