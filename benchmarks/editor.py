@@ -13,7 +13,7 @@ from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory
 
-from grader.app.editor.diagnostics import diagnostics_of
+from grader.app.editor.diagnostics import make_diagnostics
 from grader.app.editor.edited_files import EditedFiles
 from grader.app.editor.session import EditorSession
 from tests.command_line import ROOT
@@ -34,19 +34,19 @@ def _times(root: Path, files: Files, changes: int) -> tuple[float, list[float]]:
     """Return the CPU time of the first look in seconds, and those after changes."""
     session, draw = EditorSession(root), random.Random(root.name)
     start = time.process_time()
-    diagnostics_of(session.look(), root)
+    make_diagnostics(session.look(), root)
     first, times = time.process_time() - start, []
     for number in range(changes):
         path = draw.choice(sorted(files))
         text = edited_text(files[path], draw).decode("utf-8", "ignore")
         session.change(partial(EditedFiles.type, path=path, text=text))
         start = time.process_time()
-        found = diagnostics_of(session.look(), root)
+        found = make_diagnostics(session.look(), root)
         times.append(time.process_time() - start)
         if number % _CHECKED == 0:
             anew = EditorSession(root)
             anew.files.type(path, text)
-            assert diagnostics_of(anew.look(), root) == found, path
+            assert make_diagnostics(anew.look(), root) == found, path
         session.change(partial(EditedFiles.close, path=path))
         session.look()
     return first, times

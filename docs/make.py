@@ -38,8 +38,8 @@ from grader.lab.rubric.keys import (
 )
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
-from grader.report.examples import blocks_of, example_blocks, explanation_of
-from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text, rules_of
+from grader.report.examples import example_blocks, explain_kind, make_blocks
+from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text, list_rules
 from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
 from grader.ros.known.package_files import IndexedKey, facts_in_file, packages_with_files
@@ -127,8 +127,8 @@ def problems() -> Iterator[str]:
     for kind in EVERY_KIND:
         effect = f" {EFFECTS[kind.effect]}".rstrip()
         yield from (f"## {kind.code}", "", f"{escaped(kind.title)} ({kind.severity}).", "")
-        yield from (escaped(explanation_of(kind)) + effect, "")
-        rules = rules_of(kind)
+        yield from (escaped(explain_kind(kind)) + effect, "")
+        rules = list_rules(kind)
         for rule in rules:
             yield f"- [`{rule.name}`](#{rule.name}): {escaped(rule.sentence)}"
         own_rules = [rule for rule in rules if rule.kind == kind]
@@ -241,7 +241,7 @@ def rules_in_public() -> Iterator[str]:
 def rules_without_findings(counted: set[str], without_findings: list[str]) -> Iterator[str]:
     """Yield the rules of errors that are not counted: without findings, and not yet run."""
     errors = [kind for kind in EVERY_KIND if kind.severity == "error"]
-    of_errors = [rule.name for kind in errors for rule in rules_of(kind) if rule.kind == kind]
+    of_errors = [rule.name for kind in errors for rule in list_rules(kind) if rule.kind == kind]
     others = [name for name in of_errors if name not in counted]
     silent = [f"`{name}`" for name in others if name in without_findings]
     yield from ("", f"These rules found no error: {enumerated(silent)}.", "")
@@ -416,7 +416,7 @@ def example_of_kind(kind: dict[str, Any], rules: dict[str, Any]) -> Iterator[str
         yield from (f"Example: that of [{code}](problems.md#{code.lower()}).", "")
         return
     files = [f"[`{file}`](#{anchor(file)})" for file in files_beside(shown)]
-    for block in blocks_of({"frame": Rule._field_defaults["frame"], **shown}):
+    for block in make_blocks({"frame": Rule._field_defaults["frame"], **shown}):
         said = f", in `{block.file}`" if block.file not in block.title else ""
         beside = f", beside {enumerated(files)}" if files and said else ""
         yield from (f"{block.title}{said}{beside}:", "")

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from grader.files.zip_writing import zip_of
+from grader.files.zip_writing import make_zip
 from tests.samples import ROOT, SAMPLES
 
 FOLDER = ROOT / "submissions/class"
@@ -88,7 +88,7 @@ def _uploads(student: dict[str, Any]) -> Iterator[tuple[str, bytes]]:
         ).encode()
     robots = [*map(_urdf, filter(None, [student.get("first")])), robot]
     for number, urdf in enumerate(robots):
-        data = zip_of({**files, "my_robot/urdf/my_robot.urdf": urdf.read_bytes()})
+        data = make_zip({**files, "my_robot/urdf/my_robot.urdf": urdf.read_bytes()})
         yield (
             f"lab6-{number}.zip" if number else "lab6.zip",
             data[: _BROKEN_AFTER if student.get("is_broken") else None],

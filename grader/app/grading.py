@@ -16,7 +16,7 @@ from grader.base.source import Base
 from grader.base.text import enumerated, printable, shell_quoted
 from grader.lab.rubric.hint_levels import HintLevel
 from grader.lab.rubric.rubric_files import load_named
-from grader.report.formats import Format, inputs_of, render
+from grader.report.formats import Format, list_inputs, render
 from grader.report.invocation import (
     ExitCode,
     Saves,
@@ -26,7 +26,7 @@ from grader.report.invocation import (
     read_saves,
     read_threshold,
 )
-from grader.report.repository import base_of, folder_of
+from grader.report.repository import find_base, find_folder
 from grader.report.writing import (
     Warn,
 )
@@ -117,14 +117,14 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
     for kind in (request.output_format, *(kind for kind, _ in request.saves)):
-        inputs_of(kind)  # as well
+        list_inputs(kind)  # as well
     from grader.lab.grading.grade import grade
     from grader.lab.submission.opening import open_submission
     from grader.lab.submission.submission import Opening
 
     rubric = requested_rubric(request)
     if threshold is not None:
-        _check_threshold_of(rubric, request, threshold)
+        _check_threshold(rubric, request, threshold)
     reports = frozenset(os.path.realpath(file) for _, file in request.saves if not is_source(file))
     opening = Opening(request.max_size, read_arguments(request.arg or ()), reports=reports)
     submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
@@ -140,14 +140,14 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
         report, fix = add_hints(
             report, submission, request.hints, warn, is_fixed=request.fix is not None
         )
-    folder = folder_of(request.path, submission.path) if submission.is_single else None
+    folder = find_folder(request.path, submission.path) if submission.is_single else None
     besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
     return GradeRun(
-        report, base_of(request.path, folder), exit_code(report, threshold), fix, besides
+        report, find_base(request.path, folder), exit_code(report, threshold), fix, besides
     )
 
 
-def _check_threshold_of(
+def _check_threshold(
     rubric: "Rubric", request: GradeRequest, threshold: tuple[Decimal, bool]
 ) -> None:
     """Raise GraderError for a threshold above what the graded parts are worth."""

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
-from grader.base.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
+from grader.base.toml_file import KeyTable, TomlRowReader, raise_complaints, read_toml
 from grader.base.toml_types import simple_type, toml_type
 from grader.files.reading import read_capped
 from grader.ros.api import Release, StatedReleases
@@ -94,7 +94,7 @@ def _read_file(file: Path) -> Settings | None:
     for pattern, codes in row.get("per-file-ignores", {}).items():
         for code, why in _unknown_codes(codes):
             reader.complain((*keys, "per-file-ignores", pattern), f"per-file-ignores: {code}{why}")
-    complain_of(reader.complaints, text, shown)
+    raise_complaints(reader.complaints, text, shown)
     fields: dict[str, Any] = {key.replace("-", "_"): value for key, value in row.items()}
     return Settings(file, **fields)
 

@@ -70,7 +70,7 @@ _YAML_TOKEN = rf"(?<![^\s,\[{{:])(?:{_YAML_QUOTED})|(?<!\S)#[^\n]*|[][{{}}]"
 _MAX_BEFORE = 4_000  # characters, in which a bracket of YAML is searched
 
 
-def end_of(source: Source, where: Location) -> tuple[int, int]:
+def find_end(source: Source, where: Location) -> tuple[int, int]:
     """Return the line and the column after the last character of what begins at a place of a text.
 
     Both count from 1, columns in characters, as in a Location. It is the place itself where nothing
@@ -89,7 +89,7 @@ def end_offset(source: Source, start: int) -> int:
     text = source.text
     if not 0 <= start < len(text):
         return start
-    for pattern in _language_of(source, start):
+    for pattern in _choose_language(source, start):
         match = re.compile(pattern, re.MULTILINE).match(text, start)
         if match is not None:
             return start + len(match[0].rstrip())
@@ -104,7 +104,7 @@ def ended(where: Location, source_of: SourceOf) -> Location:
     if where.end_line:
         return where
     source = source_of(where.path)
-    line, column = (where.line, where.column) if source is None else end_of(source, where)
+    line, column = (where.line, where.column) if source is None else find_end(source, where)
     calls = tuple((macro, ended(at, source_of)) for macro, at in where.calls)
     return where._replace(calls=calls, end_line=line, end_column=column)
 
@@ -114,7 +114,7 @@ def _is_xml(source: Source) -> bool:
     return source.path.endswith(_XML_ENDINGS) or source.text.lstrip("\ufeff \t\r\n")[:1] == "<"
 
 
-def _language_of(source: Source, start: int) -> _Language:
+def _choose_language(source: Source, start: int) -> _Language:
     """Return the patterns of the language of a text; in YAML those for the place."""
     path = posixpath.basename(source.path)
     if path.endswith(_YAML_ENDINGS):

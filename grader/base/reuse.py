@@ -65,7 +65,7 @@ class Answers(Generic[_Asked]):
         """End the recording: what was asked is not kept any longer."""
         self._asked = None
 
-    def are_those_of(self, other: _Asked) -> bool:
+    def answers_alike(self, other: _Asked) -> bool:
         """Return whether another one answers alike."""
         return all(question(other) == answer for question, answer in self._answers)
 
@@ -107,7 +107,7 @@ class Memory:
         """
         self._check()
         kept = self._kept.get(key)
-        if kept is not None and kept.answers.are_those_of(asked) and work.repeat(kept.cost):
+        if kept is not None and kept.answers.answers_alike(asked) and work.repeat(kept.cost):
             self._used.add(key)
             result: _T = kept.result
             return result

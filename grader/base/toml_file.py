@@ -101,7 +101,7 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
         raise RubricError((f"{shown}: a number has too many digits",)) from None
 
 
-def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Path) -> None:
+def raise_complaints(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Path) -> None:
     """Raise RubricError with a line for each complaint, if there are any.
 
     The lines are in the order of the file.
@@ -109,7 +109,7 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
     if complaints:
         lines, shown = key_lines(text), printable_path(path)
         complaints_by_line = one_line_each(
-            path, [(line_of(lines, at), what) for at, what in complaints]
+            path, [(find_line(lines, at), what) for at, what in complaints]
         )
         more = len(complaints_by_line) - _MAX_COMPLAINTS
         rest = (f"{shown}: {more} more mistakes are not listed",) if more > 0 else ()
@@ -217,7 +217,7 @@ def _table_path(names: list[str], counts: dict[TomlPath, int], *, is_array: bool
     return path
 
 
-def line_of(lines: dict[TomlPath, int], path: TomlPath) -> int:
+def find_line(lines: dict[TomlPath, int], path: TomlPath) -> int:
     """Return the line of a path, or of the innermost table around it that has one."""
     while path not in lines:
         path = path[:-1]

@@ -190,7 +190,7 @@ def add_up(numbers: Iterable[float]) -> float:
     return total
 
 
-def middle_of(weighted: Iterable[tuple[float, Vector]]) -> Vector:
+def weighted_mean(weighted: Iterable[tuple[float, Vector]]) -> Vector:
     """Return the mean of points, each with its weight."""
     total = x = y = z = 0.0
     for weight, point in weighted:

@@ -83,7 +83,9 @@ def read_archive(
                 stored = opened.enter_context(tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY))
                 _decompress(_DECOMPRESSORS[kind](file), stored, name, limit, allowance)
                 file = stored
-            tree = tree_of(zip_members(file) if kind == "zip" else _tar_members(file), name, limit)
+            tree = build_tree(
+                zip_members(file) if kind == "zip" else _tar_members(file), name, limit
+            )
         except ARCHIVE_ERRORS as error:
             raise FileError(
                 name, f"cannot be read as an archive: {error_text(error, name)}"
@@ -143,7 +145,7 @@ class _SortedMembers:
 
     def _add_ignored(self, member: ArchiveMember, path: str, part: str) -> None:
         if is_setting(path) and member.kind == "file":
-            self.settings.append(_file_of(member, path))
+            self.settings.append(_make_file(member, path))
         if is_generated(path) and member.kind == "file":
             self.generated.add(path)
         self.unseen |= {part} - {path}
@@ -160,12 +162,12 @@ class _SortedMembers:
                 if environments.isdisjoint(parents(path))
             }
 
-    def paths_of(self, kind: str) -> list[str]:
+    def list_paths(self, kind: str) -> list[str]:
         """Return the paths of the members of a kind that are kept."""
         return [path for path, member in self.kept.items() if member.kind == kind]
 
 
-def tree_of(
+def build_tree(
     members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX_UNPACKED_SIZE
 ) -> Tree:
     """Return the file tree that the members of an archive make.
@@ -177,14 +179,14 @@ def tree_of(
         entries.add(member)
     entries.remove_environments()
     kept, ignored = entries.kept, entries.ignored
-    files = [_file_of(kept[path], path) for path in entries.paths_of("file")]
+    files = [_make_file(kept[path], path) for path in entries.list_paths("file")]
     ignored += [IgnoredFile(path, member.reason) for path, member in kept.items() if member.reason]
-    links = entries.paths_of("link")
+    links = entries.list_paths("link")
     ignored += [IgnoredFile(path, IS_LINK, is_closed=True) for path in links]
     return make_tree(
         name,
         files,
-        entries.paths_of("folder"),
+        entries.list_paths("folder"),
         sorted(ignored),
         sorted(entries.generated),
         [*entries.unseen, *links],
@@ -192,7 +194,7 @@ def tree_of(
     )
 
 
-def _file_of(member: ArchiveMember, path: str) -> File:
+def _make_file(member: ArchiveMember, path: str) -> File:
     return File(path, member.size, keep_small(partial(_read_member, member, path)))
 
 

@@ -22,10 +22,10 @@ from grader.files.archive import (
     ARCHIVE_ERRORS,
     NOT_REGULAR,
     ArchiveMember,
+    build_tree,
     error_text,
     read_archive,
     safe_path,
-    tree_of,
     zip_members,
 )
 from grader.files.folder import file_at, read_folder
@@ -286,7 +286,9 @@ class ClassZip:
     def _tree(self, members: dict[str, ArchiveMember], name: str) -> Tree:
         """Return a tree of these members under their new paths, which keeps the zip open."""
         try:
-            tree = tree_of([member._replace(path=path) for path, member in members.items()], name)
+            tree = build_tree(
+                [member._replace(path=path) for path, member in members.items()], name
+            )
         except ARCHIVE_ERRORS as error:
             raise FileError(name, f"cannot be read: {error_text(error, name)}") from None
         return replace(tree, kept=(self,))

@@ -164,7 +164,7 @@ def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
         raise InputError(f"cannot read standard input: {error.strerror or error}") from None
 
 
-def sha256_of(data: bytes) -> str:
+def hash_bytes(data: bytes) -> str:
     """Return the hash of some bytes, in hexadecimal digits."""
     return str(_sha256()(data).hexdigest())
 

@@ -222,13 +222,13 @@ def parents(path: str) -> Iterator[str]:
 def overlaid(tree: Tree, files: Mapping[str, bytes | None]) -> Tree:
     """Return a file tree with other content of some files; None for one that is no longer there."""
     kept = [file for path, file in tree.files.items() if path not in files]
-    new = [_file_of(path, data) for path, data in files.items() if data is not None]
+    new = [_make_file(path, data) for path, data in files.items() if data is not None]
     return make_tree(
         tree.name, (*kept, *new), tree.folders, tree.ignored, tree.generated, tree.unseen, (tree,)
     )
 
 
-def _file_of(path: str, data: bytes) -> File:
+def _make_file(path: str, data: bytes) -> File:
     def read(limit: int, *, first: bool = False) -> bytes:
         if not first and len(data) > limit:
             raise InputError(f"{path} is larger than {size_text(limit)}")

@@ -10,7 +10,7 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can contain
 _UNIX = 3
 
 
-def zip_of(files: Mapping[str, bytes], executables: Collection[str] = ()) -> bytes:
+def make_zip(files: Mapping[str, bytes], executables: Collection[str] = ()) -> bytes:
     """Return a zip of files by their paths.
 
     `executables` are the paths that get permission to be run.
@@ -28,8 +28,8 @@ def zip_of(files: Mapping[str, bytes], executables: Collection[str] = ()) -> byt
     return buffer.getvalue()
 
 
-def tar_gz_of(files: Mapping[str, bytes]) -> bytes:
-    """Return a tar.gz of files by their paths, as reproducible as a zip from `zip_of`."""
+def make_tar_gz(files: Mapping[str, bytes]) -> bytes:
+    """Return a tar.gz of files by their paths, as reproducible as a zip from `make_zip`."""
     buffer = io.BytesIO()
     with tarfile.open(fileobj=buffer, mode="w", format=tarfile.USTAR_FORMAT) as archive:
         for path, data in sorted(files.items()):

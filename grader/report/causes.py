@@ -55,15 +55,15 @@ class CauseKind(NamedTuple):
 
 def in_order_of_severity(problems: Iterable[Problem]) -> tuple[Problem, ...]:
     """Return problems, errors first and notes last, those of one severity by file and line."""
-    return tuple(sorted(problems, key=_order_of))
+    return tuple(sorted(problems, key=_make_order))
 
 
-def _order_of(problem: Problem) -> tuple[int, str, int, int]:
+def _make_order(problem: Problem) -> tuple[int, str, int, int]:
     at = problem.location
     return SEVERITIES.index(problem.severity), at.path, at.line, at.column
 
 
-def causes_of(problems: Iterable[Problem], *, with_other_messages: bool = True) -> list[Cause]:
+def group_problems(problems: Iterable[Problem], *, with_other_messages: bool = True) -> list[Cause]:
     """Return the causes of problems, in the order of the first problem of each.
 
     Without `with_other_messages`, problems of one cause have one message as well.
@@ -77,7 +77,7 @@ def causes_of(problems: Iterable[Problem], *, with_other_messages: bool = True) 
     return [Cause(tuple(group)) for group in groups.values()]
 
 
-def kinds_of(causes: Iterable[Cause]) -> list[CauseKind]:
+def group_causes(causes: Iterable[Cause]) -> list[CauseKind]:
     """Return the causes of each code, in the order of the first cause of each."""
     kinds: dict[str, list[Cause]] = {}
     for cause in causes:

@@ -32,7 +32,6 @@ from grader.report.criteria import (
     Line,
     Section,
     alike,
-    blocks_of,
     carried_text,
     hint_text,
     is_absent,
@@ -41,9 +40,10 @@ from grader.report.criteria import (
     is_not_found,
     looked_for,
     lost_points,
-    points_of,
-    status_of,
+    make_blocks,
+    name_status,
     sum_text,
+    write_points,
 )
 from grader.report.readings import UNDECIDED, VERDICTS, problem_line
 from grader.ros.api import RECOVERED
@@ -238,7 +238,7 @@ def found_line(pending: Sequence[Entry]) -> str:
     if not results or not all(is_manual(one) and one.outcome.problem == "" for one in results):
         return ""
     names = enumerated([printable(result.criterion.id) for result in results])
-    return f"Needs manual grading ({points_of(results)}): {names}"
+    return f"Needs manual grading ({write_points(results)}): {names}"
 
 
 def _unmatched(report: Report) -> list[str]:
@@ -262,7 +262,7 @@ def entries(report: Report, *, everything: bool = False) -> Mapping[str, Entry]:
     failed = {failure.id: failure for failure in failures(report)}
     entries_in_order = (failed.get(result.criterion.id, Entry(result)) for result in report.results)
     filled = {
-        one.id: one._replace(blocks=tuple(blocks_of(one, report, everything=everything)))
+        one.id: one._replace(blocks=tuple(make_blocks(one, report, everything=everything)))
         for one in entries_in_order
     }
     return {
@@ -281,7 +281,7 @@ def failures(report: Report) -> tuple[Entry, ...]:
     """
     skipped = dict(
         alike(
-            (one for one in report.results if status_of(one) == "skipped"),
+            (one for one in report.results if name_status(one) == "skipped"),
             lambda one: one.because or "",
         )
     )
@@ -333,7 +333,8 @@ def _join_equal(entries: Iterable[Entry]) -> Iterator[Entry]:
     for _, (first, *others) in alike(entries, _reason_to_join):
         names = enumerated([entry.id for entry in others])
         line = Line(
-            "alike", f"The same holds for {names} ({points_of(entry.result for entry in others)})."
+            "alike",
+            f"The same holds for {names} ({write_points(entry.result for entry in others)}).",
         )
         yield first._replace(also=tuple(others), blocks=(*first.blocks, line)) if others else first
 

@@ -57,7 +57,7 @@ Role = Literal[
 ]
 
 
-def status_of(result: Result) -> str:
+def name_status(result: Result) -> str:
     """Return the status of a criterion.
 
     It is `adjusted` by the rubric, else that of the manual mark or the check.
@@ -78,12 +78,12 @@ def is_failure(result: Result) -> bool:
 
     A manual mark or an adjustment overrides the check.
     """
-    return status_of(result) in ("failed", "partial", "errored")
+    return name_status(result) in ("failed", "partial", "errored")
 
 
 def has_passed(result: Result) -> bool:
     """Return whether a check passed, without a mark or a comment."""
-    return status_of(result) == "passed" and result.manual_mark is None and result.comment is None
+    return name_status(result) == "passed" and result.manual_mark is None and result.comment is None
 
 
 def lost_points(results: Iterable[Result]) -> Decimal:
@@ -102,7 +102,7 @@ def is_absent(result: Result) -> bool:
     """
     is_found = result.hint is not None and bool(result.hint.gains)
     return (
-        status_of(result) == "failed"
+        name_status(result) == "failed"
         and bool(result.outcome.absent)
         and not (result.carried or is_found)
     )
@@ -144,7 +144,7 @@ def earned_text(*results: Result) -> str:
     return f"{sum_text(results)}/{maximum}"
 
 
-def points_of(results: Iterable[Result]) -> str:
+def write_points(results: Iterable[Result]) -> str:
     """Return the maximum of some criteria together.
 
     For example 14 points, 14 points and 5 bonus points, 5 bonus points.
@@ -194,7 +194,7 @@ class Entry(NamedTuple):
     @property
     def status(self) -> str:
         """The status of the criterion."""
-        return status_of(self.result)
+        return name_status(self.result)
 
     @property
     def results(self) -> tuple[Result, ...]:
@@ -278,7 +278,7 @@ class CriteriaGroup(NamedTuple):
         """
         counting = [result for result in self.results if not result.criterion.bonus] or self.results
         statuses = [
-            status_of(result) for result in counting if result.points < result.criterion.points
+            name_status(result) for result in counting if result.points < result.criterion.points
         ]
         lost = {"failed", "partial", "errored"}.intersection(statuses)
         if lost:
@@ -305,7 +305,7 @@ def alike(items: Iterable[_T], key: Callable[[_T], _K]) -> list[tuple[_K, tuple[
     return [(value, tuple(some)) for value, some in items_by_key.items()]
 
 
-def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iterator[Block]:
+def make_blocks(entry: Entry, report: Report, *, everything: bool = False) -> Iterator[Block]:
     """Yield what is said about a criterion.
 
     This is what is wrong and where, the answer, what to do, and what was expected.
@@ -352,12 +352,12 @@ def _advice(entry: Entry, report: Report, *, everything: bool) -> Iterator[Block
 def _said_of_others(entry: Entry) -> Iterator[Line]:
     """Yield what is said of the criteria that are told with this one."""
 
-    def said_of(other: Entry) -> str:
+    def describe_entry(other: Entry) -> str:
         return " ".join(line.text for line in _findings(other.result))
 
-    for said, others in alike(entry.also, said_of):
+    for said, others in alike(entry.also, describe_entry):
         names = printable(enumerated([other.id for other in others]))
-        is_same = said == said_of(entry)
+        is_same = said == describe_entry(entry)
         yield Line("also", f"The same holds for {names}." if is_same else f"{names}: {said}")
 
 

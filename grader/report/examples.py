@@ -24,12 +24,12 @@ class _ExampleBlock(NamedTuple):
     text: str
 
 
-def explanation_of(kind: Kind) -> str:
+def explain_kind(kind: Kind) -> str:
     """Return what ROS 2 does about a problem and how to fix the file, in one line.
 
     The title if that is unknown.
     """
-    entry = _family(_family_of(kind.code)).get(kind.code, {})
+    entry = _family(_read_family(kind.code)).get(kind.code, {})
     return " ".join(entry.get("explanation", kind.title).split())
 
 
@@ -39,9 +39,9 @@ def example_blocks(name: str) -> Iterator[_ExampleBlock]:
     Only if it is known; that of a code may be that of one of its rules.
     """
     if name in RULES:
-        yield from blocks_of(RULES[name]._asdict())
+        yield from make_blocks(RULES[name]._asdict())
         return
-    family = _family_of(name)
+    family = _read_family(name)
     entries = _family(family)
     example = entries.get(name, {})
     if "example" in example:
@@ -50,25 +50,25 @@ def example_blocks(name: str) -> Iterator[_ExampleBlock]:
         if family == _CHECKS:
             given = f"\nwith = {toml_literal(example['with'])}" if "with" in example else ""
             yield _ExampleBlock("In a rubric", "rubric.toml", f'check = "{name}"{given}')
-        yield from blocks_of({"frame": next(iter(entries["frames"])), **example})
+        yield from make_blocks({"frame": next(iter(entries["frames"])), **example})
 
 
-def blocks_of(example: Mapping[str, Any]) -> Iterator[_ExampleBlock]:
+def make_blocks(example: Mapping[str, Any]) -> Iterator[_ExampleBlock]:
     """Yield what is wrong and what is right in an example, and the other files beside it."""
-    file = _name_of(example["frame"])
+    file = _name_frame(example["frame"])
     yield _ExampleBlock("Wrong", file, example["wrong"].strip("\n") or "(an empty file)")
     yield _ExampleBlock("Right", file, example["right"].strip("\n"))
     for frame, text in example.get("beside", {}).items():
-        other = _name_of(frame)
+        other = _name_frame(frame)
         if text:
             yield _ExampleBlock(f"Beside it, in {other}", other, text.strip("\n"))
 
 
-def _name_of(frame: str) -> str:
+def _name_frame(frame: str) -> str:
     return frame.rpartition("/")[2]
 
 
-def _family_of(name: str) -> str:
+def _read_family(name: str) -> str:
     if name.isupper():
         return name.rstrip(digits).lower()
     return _CHECKS

@@ -18,7 +18,7 @@ from grader.lab.checks.registry import check_names, find_check, unused_checks
 from grader.lab.rubric.criterion import Criterion, worth
 from grader.lab.rubric.rubric import Rubric, shipped_rubrics
 from grader.report.criteria import model_lines
-from grader.report.examples import example_blocks, explanation_of
+from grader.report.examples import example_blocks, explain_kind
 from grader.ros.api import parameter_explanation, releases_explanation
 from grader.workspace.api import EVERY_KIND, RULES, Rule, public_findings
 
@@ -121,7 +121,7 @@ def _explain_kind(kind: Kind) -> str:
     """Return the explanation of a problem code."""
     texts = [
         f"{kind.code} ({kind.severity}): {kind.title}",
-        _fill(explanation_of(kind)),
+        _fill(explain_kind(kind)),
         EFFECTS[kind.effect],
     ]
     return _paragraphs([*texts, _rules_text(kind), *_examples(kind.code)])
@@ -160,14 +160,14 @@ def _guess_name(name: str, rubric: Rubric) -> str:
     return similar or did_you_mean(name, known) or f"; {lists}"
 
 
-def rules_of(kind: Kind) -> list[Rule]:
+def list_rules(kind: Kind) -> list[Rule]:
     """Return the rules of workspaces that a kind of problem has."""
     return [rule for rule in RULES.values() if rule.has(kind)]
 
 
 def _rules_text(kind: Kind) -> str:
     """Return the rules of a kind, one a line."""
-    lines = [f"  {rule.name}: {rule.sentence}" for rule in rules_of(kind)]
+    lines = [f"  {rule.name}: {rule.sentence}" for rule in list_rules(kind)]
     return "\n".join(["Rules:", "", *lines]) if lines else ""
 
 
@@ -177,7 +177,7 @@ def _rule_text(rule: Rule) -> str:
     for symptom in rule.symptoms:
         texts.append(f"In the terminal:\n\n    {symptom.example}")
     for kind in dict.fromkeys((rule.kind, rule.doubtful)):
-        texts.append(_fill(f"{kind.code} ({kind.severity}): {kind.title}. {explanation_of(kind)}"))
+        texts.append(_fill(f"{kind.code} ({kind.severity}): {kind.title}. {explain_kind(kind)}"))
     return _paragraphs([*texts, public_findings(rule.name), *_examples(rule.name)])
 
 

@@ -11,8 +11,8 @@ from typing import NamedTuple
 from grader.base.problems import NO_FIXES, Fixes, Problem, Severity
 from grader.base.source import Base, Location
 from grader.base.text import printable, sentence
-from grader.files.reading import sha256_of
-from grader.report.examples import explanation_of
+from grader.files.reading import hash_bytes
+from grader.report.examples import explain_kind
 from grader.report.inspection import Inspection
 from grader.report.locations import archive_around, location_text, message_at
 
@@ -49,10 +49,10 @@ class Finding(NamedTuple):
 
 def findings_in_inspection(inspection: Inspection) -> list[Finding]:
     """Return the problems of robots and packages, in the order of their places."""
-    return sorted(map(finding_of_problem, inspection.problems), key=place_of)
+    return sorted(map(finding_of_problem, inspection.problems), key=sort_key)
 
 
-def place_of(finding: Finding) -> tuple[str, int, int]:
+def sort_key(finding: Finding) -> tuple[str, int, int]:
     """Return the path, line and column of a finding, by which findings are sorted."""
     return finding.location[:3]
 
@@ -61,7 +61,7 @@ def finding_of_problem(problem: Problem) -> Finding:
     """Return the finding of a problem of a file; its rule is the kind of problem."""
     kind, where = problem.kind, problem.location
     page = f"{DOCUMENTATION}problems.html#{kind.code.lower()}"
-    rule = FindingKind(kind.code, kind.title, explanation_of(kind), page, problem.rule)
+    rule = FindingKind(kind.code, kind.title, explain_kind(kind), page, problem.rule)
     message = message_at(printable(problem.message), where)
     return Finding(
         rule, kind.severity, message, where, problem.related, problem.fixes, problem.cause
@@ -97,4 +97,4 @@ def fingerprints(findings: Iterable[Finding], base: Base) -> Iterator[str]:
         path, _ = place_in_repository(finding, base)
         text = f"{path}\0{finding.rule.id}\0{re.sub(_NUMBER_OF_LINE, '', finding.message)}"
         counts[text] += 1
-        yield sha256_of(f"{text}\0{counts[text]}".encode("utf-8", "backslashreplace"))
+        yield hash_bytes(f"{text}\0{counts[text]}".encode("utf-8", "backslashreplace"))

@@ -121,10 +121,10 @@ _SCHEMAS = {
 
 def json_schema(name: str) -> dict[str, Any]:
     """Return the schema of a report, an inspection, a graph or a rubric test."""
-    from grader.report.json_data import schema_of  # late: most commands need no JSON
+    from grader.report.json_data import make_schema  # late: most commands need no JSON
 
     title, place = _SCHEMAS[name]
-    return schema_of(title, _load(place))
+    return make_schema(title, _load(place))
 
 
 def render(
@@ -143,7 +143,7 @@ def render(
     """
     if kind.needs == "console":
         return draw(partial(_load(kind.function), report, verbose=verbose), screen)
-    text: str = _load(kind.function)(report, *inputs_of(kind, base))
+    text: str = _load(kind.function)(report, *list_inputs(kind, base))
     return text if kind is Format.GITHUB else without_commands(text)  # whose lines are commands
 
 
@@ -181,7 +181,7 @@ def _load(place: str) -> Any:
     return getattr(import_module(f"grader.report.{module}"), name)
 
 
-def inputs_of(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:
+def list_inputs(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:
     """Return what the function of a format takes after the report.
 
     Raises InputError if it cannot be had.

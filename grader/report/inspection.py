@@ -200,7 +200,7 @@ def problem_counts(inspection: Inspection) -> str:
     return "the names agree"
 
 
-def look_of(inspection: Inspection) -> str:
+def choose_look(inspection: Inspection) -> str:
     """Return the verdict whose look the whole has.
 
     This is that of the only robot, else the worst of all.

@@ -248,7 +248,7 @@ def inner(owner: str, keys: Mapping[str, KeyType]) -> dict[str, Key]:
     return {name: (kind, f"{owner}.{name}") for name, kind in keys.items()}
 
 
-def schema_of(title: str, described: "JsonObject") -> dict[str, Any]:
+def make_schema(title: str, described: "JsonObject") -> dict[str, Any]:
     """Return the JSON Schema of a document."""
     draft = "https://json-schema.org/draft/2020-12/schema"
     return {"$schema": draft, "title": f"grader {title}", **described.schema}

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from difflib import SequenceMatcher
 from itertools import groupby
 
-from grader.base.extents import end_of
+from grader.base.extents import find_end
 from grader.base.source import Edit, Location, Source, SourceOf
 from grader.base.text import first_lines, printable
 
@@ -30,7 +30,7 @@ def _end_in_line(source: Source, where: Location) -> int:
 
     This is the line's end where it goes on in others.
     """
-    end_line, end_column = end_of(source, where)
+    end_line, end_column = find_end(source, where)
     if end_line != where.line:
         end_column = len(source.line(where.line).rstrip()) + 1
     return max(where.column, end_column - 1)

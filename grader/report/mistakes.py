@@ -8,8 +8,8 @@ from grader.base.text import printable, sentence
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import Criterion
 from grader.report.content import entries, other_problems, report_sections
-from grader.report.criteria import Entry, is_absent, is_failure, points_of
-from grader.report.findings import DOCUMENTATION, Finding, FindingKind, finding_of_problem, place_of
+from grader.report.criteria import Entry, is_absent, is_failure, write_points
+from grader.report.findings import DOCUMENTATION, Finding, FindingKind, finding_of_problem, sort_key
 from grader.report.locations import message_at
 
 
@@ -24,7 +24,7 @@ def findings_in_report(report: Report) -> list[Finding]:
         is_mistake = is_failure(entry.result) and not entry.result.why_given
         if is_mistake or entry.id in undecided:
             findings.append(_criterion_finding(entry, report))
-    return sorted(findings, key=place_of)
+    return sorted(findings, key=sort_key)
 
 
 class Mistake(NamedTuple):
@@ -51,7 +51,7 @@ def mistakes_in_report(report: Report) -> list[Mistake]:
     for result in report.pending_automatic:
         entry = known[result.criterion.id]
         mistake = _mistake(entry, report)
-        mistakes.append(mistake._replace(cost=points_of([result])))
+        mistakes.append(mistake._replace(cost=write_points([result])))
     return mistakes
 
 

@@ -9,12 +9,12 @@ from grader.base.text import printable_path
 from grader.report.writing import CHECKOUTS
 
 
-def folder_of(path: str, inside: str | None) -> Path:
+def find_folder(path: str, inside: str | None) -> Path:
     """Return the folder that the paths of a single URDF start in, given the path in it."""
     return Path(path).parent.resolve().joinpath(*[".."] * (inside or "").count("/")).resolve()
 
 
-def base_of(path: str, single: Path | None) -> Base:
+def find_base(path: str, single: Path | None) -> Base:
     """Return where a submission is in its repository, and seen from the current folder.
 
     `single` is the folder in which paths of a single URDF start.

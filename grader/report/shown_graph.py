@@ -82,7 +82,7 @@ class ShownGraph:
         """Return the problems that name the line of an end, if it has one of its own."""
         return self._at(end.location) if end.location != node.location else ()
 
-    def findings_of(self, number: int) -> Sequence[Problem]:
+    def list_findings(self, number: int) -> Sequence[Problem]:
         """Return the problems at a node that are at none of its ends.
 
         Of several nodes of one line, such as that of an include, the first one has them.
@@ -136,7 +136,7 @@ def transform_tree(transforms: Sequence[GraphTransform]) -> Iterator[tuple[int, 
             stack += [(depth + 1, other) for other in reversed(children.get(each.child, []))]
 
 
-def severity_of(problems: Sequence[Problem]) -> str:
+def find_severity(problems: Sequence[Problem]) -> str:
     """Return the worst severity of problems; empty without any, and for notes."""
     severities = {problem.severity for problem in problems}
     for severity in ("error", "warning"):

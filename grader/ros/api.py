@@ -68,7 +68,7 @@ if TYPE_CHECKING:
     from grader.ros.urdf.reader import read_urdf as read_urdf
     from grader.ros.urdf.shapes import Shape as Shape
     from grader.ros.urdf.shapes import UnknownShape as UnknownShape
-    from grader.ros.urdf.wheel_travel import travel_of as travel_of
+    from grader.ros.urdf.wheel_travel import find_travel as find_travel
     from grader.ros.urdf.wheel_travel import turning_joint as turning_joint
     from grader.ros.xml.xml_problems import RECOVERED as RECOVERED
 else:
@@ -88,7 +88,7 @@ else:
         "urdf.normal_form": "robot_hash written_form",
         "urdf.reader": "Reading read_urdf",
         "urdf.shapes": "Shape UnknownShape",
-        "urdf.wheel_travel": "travel_of turning_joint",
+        "urdf.wheel_travel": "find_travel turning_joint",
         "xml.xml_problems": "RECOVERED",
     }
     __getattr__ = late_names(__name__, _NAMES)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.lab.authoring.mutant_kinds import draw, kind_of, scores_by_kind, why_right
+from grader.lab.authoring.mutant_kinds import draw, find_kind, scores_by_kind, why_right
 from grader.lab.authoring.mutants import Mutant
 
 pytestmark = pytest.mark.slow
@@ -31,10 +31,10 @@ def test_a_sample_has_mutants_of_all_families() -> None:
 
 def test_every_family_has_a_kind() -> None:
     """By how its name begins."""
-    assert kind_of("world element deleted") == "worlds"
-    assert kind_of("bridge row removed") == "bridges"
-    assert kind_of("spin removed") == "code"
-    assert kind_of("anything else") == "others"
+    assert find_kind("world element deleted") == "worlds"
+    assert find_kind("bridge row removed") == "bridges"
+    assert find_kind("spin removed") == "code"
+    assert find_kind("anything else") == "others"
 
 
 def test_the_score_of_a_kind_counts_what_should_be_caught() -> None:

@@ -36,7 +36,7 @@ def started(submission: Submission) -> set[tuple[object, ...]]:
     for package in submission.lab_packages.values():
         for path in package.launch_files:
             for node in package.launch(path).nodes:
-                found.add((node.name, submission.workspace.code.name_of(node), node.when))
+                found.add((node.name, submission.workspace.code.find_name(node), node.when))
     for name, given in submission.workspace.parameters.owners.items():
         for one in given:
             for key, parameter in one.values.items():

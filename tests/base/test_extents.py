@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.base.extents import end_of, end_offset, ended
+from grader.base.extents import end_offset, ended, find_end
 from grader.base.source import Location, Source
 
 # Of each language a text in which « and » stand around what is meant.
@@ -59,7 +59,7 @@ def test_it_ends_after_the_tag_value_or_name(path: str, marked: str) -> None:
     meant, _, after = rest.partition("»")
     source = Source(path, before + meant + after)
     start = source.at(len(before))
-    line, column = end_of(source, start)
+    line, column = find_end(source, start)
     assert source.text[len(before) : source.offset(line, column)] == meant
 
 
@@ -69,7 +69,7 @@ def test_a_place_where_nothing_begins_ends_where_it_begins(text: str) -> None:
     source = Source("a.yaml", text)
     for at in (Location("a.yaml", 1, 1), Location("a.yaml", 1, 9), Location("a.yaml", 9, 9)):
         if text != "x\n" or at.column > 1:
-            assert end_of(source, at) == (at.line, at.column)
+            assert find_end(source, at) == (at.line, at.column)
 
 
 def test_columns_are_characters() -> None:
@@ -77,7 +77,7 @@ def test_columns_are_characters() -> None:
     source = Source("a.urdf", '\ufeff<link name="\U0001f916é"/>')
     where = source.tag(0, "name")
     assert (where.line, where.column) == (1, 7)
-    assert end_of(source, where) == (1, 16)
+    assert find_end(source, where) == (1, 16)
 
 
 def test_calls_have_their_ends() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from grader.base.transforms import Transform, dot, rotation_about, rotation_from_rpy, unit
 from grader.report.drawing.drive import drive_data
-from grader.report.drawing.graded_picture import picture_of
+from grader.report.drawing.graded_picture import draw_report
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Robot
 from grader.ros.urdf.reader import read_urdf
@@ -105,7 +105,7 @@ def test_robot_drives_as_computed(open_page: Open, tmp_path: Path, name: str) ->
     as its velocity says, at first and for the whole way.
     """
     page = open_page(write(tmp_path, "grade", SAMPLES[name].path)).page
-    picture = picture_of(SAMPLES[name].grade())
+    picture = draw_report(SAMPLES[name].grade())
     assert picture is not None
     drive = drive_data(picture)
     assert drive is not None

@@ -16,7 +16,7 @@ import pytest
 from grader.app.bundle import gradescope as installed
 from grader.app.bundle.gradescope import autograder_zip, package_files, requirements
 from grader.base.errors import InputError
-from grader.files.reading import sha256_of
+from grader.files.reading import hash_bytes
 from grader.lab.checks.check import describe
 from grader.lab.checks.outcome import Outcome
 from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
@@ -242,7 +242,7 @@ def test_a_custom_rubric(tmp_path: Path) -> None:
     settings = json.loads((source / "autograder.json").read_text())
     assert (settings["rubric"], settings["sha256"]) == (
         "source/rubric.toml",
-        sha256_of(own.read_bytes()),
+        hash_bytes(own.read_bytes()),
     )
     autograder = Autograder(
         tmp_path / "autograder", source, environment_for(source, tmp_path / "venv")

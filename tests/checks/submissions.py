@@ -9,7 +9,7 @@ from pathlib import Path
 
 from grader.base.errors import InputError
 from grader.files.tree import File, IgnoredFile, make_tree
-from grader.lab.submission.opening import submission_of
+from grader.lab.submission.opening import make_submission
 from grader.lab.submission.submission import Lab, Submission
 
 FOLDER = "my_robot"
@@ -47,7 +47,7 @@ class Submitted:
             ],
             generated=[path for path in self.files if path.startswith("install/")],
         )
-        return submission_of(tree, "submission", Lab("urdf/my_robot.urdf", FOLDER))
+        return make_submission(tree, "submission", Lab("urdf/my_robot.urdf", FOLDER))
 
     def data(self, path: str) -> bytes:
         """Return the bytes of a file."""

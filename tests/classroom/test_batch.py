@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.reports.class_reports import report_of
+from grader.classroom.reports.class_reports import make_report
 from grader.report.formats import Format, render
 from tests.classroom.class_runs import (
     class_with_roster,
@@ -204,7 +204,7 @@ def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
     (folder / "ann/my_robot.urdf").write_text('<robot name="other"/>\n' * 100)
     before = (book / "results.jsonl").read_bytes()
     texts = {
-        key: render(report_of(Gradebook(book), Gradebook(book).grade(key)), Format.TERMINAL)
+        key: render(make_report(Gradebook(book), Gradebook(book).grade(key)), Format.TERMINAL)
         for key in ("ann", "bea")
     }
     assert quoted not in texts["ann"]

@@ -10,7 +10,7 @@ import pytest
 from grader.base.errors import InputError
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.review_items import ReviewFilter, review_items
-from grader.classroom.results.results import digest_of
+from grader.classroom.results.results import hash_values
 from grader.classroom.review.review_session import ReviewSession
 from tests.checks.submissions import jpeg
 from tests.classroom.gradebooks import PNG, batch, grader, lab_text, urdf, write_submission
@@ -243,7 +243,7 @@ def test_a_team_with_several_files_is_one_item(tmp_path: Path) -> None:
     done = batch(tmp_path)
     assert done.returncode == 0, done.stderr
     book = Gradebook(tmp_path / "book")
-    assert sorted(book.keys, key=digest_of) == ["gum", "ash"]
+    assert sorted(book.keys, key=hash_values) == ["gum", "ash"]
     assert len({one.digest for one in book.results.all()}) == 2
     found = review_items(book).values()
     assert {

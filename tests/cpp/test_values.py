@@ -6,7 +6,7 @@ from grader.ros.cpp.cpp_evaluation import CppEvaluation, LibraryCalls
 from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue
 from grader.ros.cpp.declarations import CppFile
 from grader.ros.cpp.syntax import parse_cpp
-from grader.ros.cpp.unit import CppUnit, arguments_of, called_name
+from grader.ros.cpp.unit import CppUnit, called_name, list_arguments
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import Unknown
 
@@ -24,7 +24,7 @@ def evaluated(*texts: str) -> list[CppValue]:
     evaluation = CppEvaluation(unit, _CALLS, budget)
     calls = [node for file in files for node in file.calls if node.kind == "call_expression"]
     used = [node for node in calls if called_name(node) == "use"]
-    return [evaluation.value_of(node) for node in arguments_of(used[-1])]
+    return [evaluation.evaluate_node(node) for node in list_arguments(used[-1])]
 
 
 def shown(value: CppValue) -> object:

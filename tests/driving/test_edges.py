@@ -6,7 +6,7 @@ from grader.base.errors import NotDecided, RubricError
 from grader.lab.checks import driving
 from grader.ros.urdf import resting
 from grader.ros.urdf.driving import describe_driving, plan_drive
-from grader.ros.urdf.resting import body_of, find_rest
+from grader.ros.urdf.resting import find_rest, make_body
 from grader.ros.urdf.standing_robot import StandingRobot
 from tests.driving.test_laws import base, configuration, part
 
@@ -134,7 +134,7 @@ def test_what_cannot_be_told_of_a_robot(shapes: list[str], reason: str) -> None:
     parts = [part(f"l{k}", shape, f"{k * 0.01} 0 0") for k, shape in enumerate(shapes)]
     robot = configuration('<link name="base"/>', *parts)
     with pytest.raises(NotDecided, match=reason):
-        find_rest(body_of(robot, "base"))
+        find_rest(make_body(robot, "base"))
     if len(shapes) > resting.MAX_SHAPES:
         with pytest.raises(NotDecided, match=reason):
             StandingRobot(robot, ["l0"])
@@ -144,7 +144,7 @@ def test_numbers_may_be_too_large() -> None:
     """A ball that is 1e150 m wide has no place at which it touches the ground, but for rounding."""
     huge = part("huge", '<sphere radius="1e150"/>', "0 0 0", "0.3 0.2 0")
     with pytest.raises(NotDecided, match="too large"):
-        find_rest(body_of(configuration(base("0.1 0.1 0.1", "0 0 0"), huge), "base"))
+        find_rest(make_body(configuration(base("0.1 0.1 0.1", "0 0 0"), huge), "base"))
 
 
 def test_a_ball_rests_anywhere_and_a_thin_plate_lies_down() -> None:
@@ -152,16 +152,16 @@ def test_a_ball_rests_anywhere_and_a_thin_plate_lies_down() -> None:
     ball = configuration(
         '<link name="base"><visual><geometry><sphere radius="0.1"/></geometry></visual></link>'
     )
-    assert find_rest(body_of(ball, "base")).tilt == pytest.approx(0.0, abs=1e-6)
+    assert find_rest(make_body(ball, "base")).tilt == pytest.approx(0.0, abs=1e-6)
     heavy = part("ball", '<sphere radius="0.5"/>', "0 0 0")
     rolling = configuration(base("0.01 0.01 0.01", "0.4 0 0.1"), heavy)
-    assert find_rest(body_of(rolling, "base")).has_fallen
+    assert find_rest(make_body(rolling, "base")).has_fallen
     plate = configuration(base("1 0 1", "0 0 0"))
-    assert find_rest(body_of(plate, "base")).has_fallen
+    assert find_rest(make_body(plate, "base")).has_fallen
 
 
 def test_a_fall_ends_after_its_most_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where it has come to until then is how the robot stands."""
     monkeypatch.setattr(resting, "_MAX_STEPS", 1)
     robot = configuration(base("0.4 0.2 0.05", "-0.15 0 0"), LEFT, RIGHT)
-    assert find_rest(body_of(robot, "base")).tilt > 0.0
+    assert find_rest(make_body(robot, "base")).tilt > 0.0

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from grader.base.transforms import unit
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
-from grader.ros.urdf.resting import body_of, find_rest
+from grader.ros.urdf.resting import find_rest, make_body
 from grader.ros.urdf.standing_robot import StandingRobot
 from tests.examples import examples
 
@@ -77,7 +77,7 @@ def test_a_robot_at_rest_cannot_fall(
             "rod", f'<cylinder radius="{radius / 3}" length="0.4"/>', f"{y} {z} {x}", f"{roll} 1 0"
         ),
     )
-    body = body_of(robot, "base")
+    body = make_body(robot, "base")
     rest = find_rest(body)
     if rest.has_fallen:
         return
@@ -185,7 +185,7 @@ def test_the_positions_of_joints_count(reach: float) -> None:
         '<limit lower="0" upper="1" effort="1" velocity="1"/></joint>'
     )
     robot = configuration(base("0.4 0.4 0.1", "0 0 0"), slide).moved("slide", reach)
-    rest = find_rest(body_of(robot, "base"))
+    rest = find_rest(make_body(robot, "base"))
     centre = 0.99 * reach
     if abs(centre - 0.2) > 1e-3:
         assert (rest.tilt < 0.01) == (centre < 0.2)

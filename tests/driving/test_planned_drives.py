@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from grader.report.drawing.drive import drive_data
-from grader.report.drawing.graded_picture import picture_of
+from grader.report.drawing.graded_picture import draw_report
 from grader.report.drawing.picture import plain_picture
 from grader.report.drawing.space import space_data, without_names
 from grader.ros.urdf.driving import plan_drive
@@ -31,7 +31,7 @@ def drive_of(*elements: str, meshes: Any = None) -> Any:
 
 def sample_drive(name: str) -> Any:
     """Return how the robot of a sample drives."""
-    picture = picture_of(SAMPLES[name].grade())
+    picture = draw_report(SAMPLES[name].grade())
     assert picture is not None
     return drive_data(picture)
 
@@ -100,7 +100,7 @@ def test_a_wheel_that_no_joint_turns_does_not_drive() -> None:
 
 def test_page_of_a_robot_without_wheels_has_no_drive() -> None:
     """Such as an arm."""
-    picture = picture_of(SAMPLES["arm/axis-sign"].grade())
+    picture = draw_report(SAMPLES["arm/axis-sign"].grade())
     assert picture is not None
     data = space_data(picture, {})
     assert data is not None
@@ -109,7 +109,7 @@ def test_page_of_a_robot_without_wheels_has_no_drive() -> None:
 
 def test_an_anonymous_robot_drives_without_names() -> None:
     """Its joints have numbers, and there is no text."""
-    picture = picture_of(SAMPLES["reference"].grade())
+    picture = draw_report(SAMPLES["reference"].grade())
     assert picture is not None
     data = space_data(picture, {})
     assert data is not None

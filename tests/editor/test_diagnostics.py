@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from lsprotocol import types as lsp
 
-from grader.app.editor.diagnostics import diagnostics_of
+from grader.app.editor.diagnostics import make_diagnostics
 from grader.app.editor.session import EditorSession
 from tests.command_line import ROOT
 
@@ -22,7 +22,7 @@ _TWO_MISTAKES = (
 
 
 def _diagnostics(root: Path) -> list[tuple[str, lsp.Diagnostic]]:
-    shown = diagnostics_of(EditorSession(root).look(), root)
+    shown = make_diagnostics(EditorSession(root).look(), root)
     return [(path, each) for path, of_file in shown.items() for each in of_file]
 
 
@@ -57,7 +57,7 @@ def test_no_two_diagnostics_are_one_mistake(top: str) -> None:
     """No two have one cause, or overlap, in the samples, the labs and the files of the corpus."""
     for root in _workspaces(ROOT / top):
         look = EditorSession(root).look()
-        shown = diagnostics_of(look, root)
+        shown = make_diagnostics(look, root)
         causes = {}
         for finding in look.findings:
             if finding.cause:

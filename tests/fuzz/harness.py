@@ -98,7 +98,7 @@ class Harness(NamedTuple):
 
 
 def packed(folder: Path) -> bytes:
-    """Return the files of a folder as one input, the inverse of `files_of`."""
+    """Return the files of a folder as one input, the inverse of `read_files`."""
     files = [
         path
         for path in sorted(folder.rglob("*"))

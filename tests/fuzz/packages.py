@@ -67,7 +67,7 @@ def launch(data: bytes, ending: str) -> None:
         check_location(reference.location, {path: text})
     for node in (*found.nodes, *found.forgotten):
         check_location(node.location, {path: text})
-    assert all(frame is None or frame[:1] != "/" for frame in found.frames_of("base_link"))
+    assert all(frame is None or frame[:1] != "/" for frame in found.list_frames("base_link"))
 
 
 def cmake(data: bytes) -> None:

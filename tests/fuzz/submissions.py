@@ -12,9 +12,9 @@ from grader.base.text import printable
 from grader.files.tree import make_tree
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Hint, Report, Result
-from grader.lab.hints.search import gains_of
+from grader.lab.hints.search import list_gains
 from grader.lab.rubric.rubric import Rubric
-from grader.lab.submission.opening import read_submission, submission_of
+from grader.lab.submission.opening import make_submission, read_submission
 from grader.lab.submission.submission import Submission
 from grader.report.formats import Format, render
 from tests.checks.submissions import file_of
@@ -42,7 +42,7 @@ def package(data: bytes, rubric: str) -> None:
     )
     with user_errors():
         check_graded(
-            RUBRICS[rubric], submission_of(tree, "student", RUBRICS[rubric].lab), "student"
+            RUBRICS[rubric], make_submission(tree, "student", RUBRICS[rubric].lab), "student"
         )
 
 
@@ -105,7 +105,7 @@ def _check_hint(
     edits = [edit for it in earlier for edit in it.edits]
     results = _graded(report, submission, [*edits, *hint.edits])
     assert all(results[before.criterion.id].points >= before.points for before in report.results)
-    gains = gains_of(_graded(report, submission, edits), results)
+    gains = list_gains(_graded(report, submission, edits), results)
     assert hint.gains.items() <= gains.items()
     assert earlier or not hint.edits or gains.keys() <= promised
 

@@ -12,7 +12,7 @@ from grader.lab.checks.manual import answered, evidence_shown
 from grader.lab.checks.outcome import Outcome
 from grader.lab.checks.registry import own_checks
 from grader.lab.documents.pictures import EmbeddedPicture
-from grader.lab.grading.criterion_pictures import may_have_pictures, pictures_of
+from grader.lab.grading.criterion_pictures import find_pictures, may_have_pictures
 from grader.lab.grading.report import Result
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.submission.submission import Opening
@@ -35,7 +35,7 @@ def shown(files: dict[str, bytes], names: list[str]) -> list[str]:
     """Return the pictures of the evidence with these labels, as words."""
     submission = Submitted(files).submission
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[evidence_shown], {"names": names})
-    found = pictures_of(Result(criterion, evidence_shown(submission, names=names)), submission)
+    found = find_pictures(Result(criterion, evidence_shown(submission, names=names)), submission)
     return [one.where if isinstance(one, EmbeddedPicture) else str(one) for one in found]
 
 
@@ -45,7 +45,7 @@ def in_answer(files: dict[str, bytes], place: str) -> list[str]:
     arguments = {"question": "Why?", "places": [place]}
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[answered], arguments)
     outcome = answered(submission, question="Why?", places=[place])
-    found = pictures_of(Result(criterion, outcome), submission)
+    found = find_pictures(Result(criterion, outcome), submission)
     return [one.where if isinstance(one, EmbeddedPicture) else str(one) for one in found]
 
 
@@ -141,7 +141,7 @@ def test_a_pdf_opens_on_the_page_of_its_heading() -> None:
     submission = Submitted({"lab.pdf": report}).submission
     names = ["task 1 step 18"]
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[evidence_shown], {"names": names})
-    (found,) = pictures_of(Result(criterion, evidence_shown(submission, names=names)), submission)
+    (found,) = find_pictures(Result(criterion, evidence_shown(submission, names=names)), submission)
     assert isinstance(found, EmbeddedPicture)
     assert (found.where, found.page, found.data) == ("lab.pdf", 2, report)
 
@@ -186,14 +186,14 @@ def test_without_a_name_all_pictures_are_shown() -> None:
         criterion, Outcome("pending", "?", "No.", location=Location("answers.md", 1, 1))
     )
     assert not may_have_pictures(result)
-    assert pictures_of(result, submission) == ()
+    assert find_pictures(result, submission) == ()
 
 
 def test_a_file_that_is_gone_is_named() -> None:
     """As after a new run that found another file."""
     submission = Submitted({"a.png": STEP_8}).submission
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[evidence_shown], {"names": ["a"]})
-    (found,) = pictures_of(Result(criterion, Outcome("pending", "?", ("b.png",))), submission)
+    (found,) = find_pictures(Result(criterion, Outcome("pending", "?", ("b.png",))), submission)
     assert str(found) == "b.png: it is no longer in the submission"
 
 
@@ -203,4 +203,4 @@ def test_a_document_in_place_of_a_robot_shows_all_its_pictures() -> None:
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[urdf_loads], {})
     result = Result(criterion, Outcome("pending", "?", ("lab.docx",)))
     for opening in (submission.opening, Opening(no_documents="it took long")):
-        assert len(pictures_of(result, replace(submission, opening=opening))) == 2
+        assert len(find_pictures(result, replace(submission, opening=opening))) == 2

@@ -6,7 +6,7 @@ import pytest
 
 from grader.ros.launch.launch_file import read_launch
 from grader.ros.launch.launch_model import Launch
-from grader.ros.launch.node_parameters import parameters_of
+from grader.ros.launch.node_parameters import collect_parameters
 from grader.ros.python.values import Unknown
 from tests.launch.launch_samples import Installed, summarize
 
@@ -80,7 +80,7 @@ def node(built: str, what: str = ".to_dict()") -> str:
 def given(body: str, machine: Installed | None = None) -> dict[str, Any]:
     """Return the parameters of the node that is started; `?` for those that are unknown, `more` if there may be more."""
     machine = machine or installed()
-    found = parameters_of(launch(body, machine).nodes[0], machine.open_installed, "b")
+    found = collect_parameters(launch(body, machine).nodes[0], machine.open_installed, "b")
     values = {
         name: "?" if isinstance(it.value, Unknown) else it.value
         for name, it in found.values.items()

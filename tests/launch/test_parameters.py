@@ -9,7 +9,7 @@ from hypothesis import given as hypothesis_given
 from hypothesis import strategies as st
 
 from grader.ros.launch.launch_model import Launch, StartedNode
-from grader.ros.launch.node_parameters import NodeParameters, controllers_of, parameters_of
+from grader.ros.launch.node_parameters import NodeParameters, collect_parameters, list_controllers
 from grader.ros.python.values import Unknown
 from tests.launch.launch_samples import Installed, read
 
@@ -66,7 +66,7 @@ def node(actions: str, ending: str = "py") -> StartedNode:
 
 def given(actions: str, ending: str = "py", **options: Any) -> NodeParameters:
     """Return the parameters of the last node that is started."""
-    return parameters_of(node(actions, ending), Installed(FILES).open_installed, **options)
+    return collect_parameters(node(actions, ending), Installed(FILES).open_installed, **options)
 
 
 def values(found: NodeParameters) -> dict[str, Any]:
@@ -215,7 +215,7 @@ def test_wildcards(key: str, is_read: bool) -> None:
     """In a key, * stands for one name and ** for any number of them, or none."""
     files = {f"{SHARE}/named.yaml": f"{key}: {{ros__parameters: {{a: 1}}}}".encode()}
     started = node(IN_ROOT.replace("'/'", "'ns'").format(FILE))
-    found = parameters_of(started, Installed(files).open_installed)
+    found = collect_parameters(started, Installed(files).open_installed)
     assert values(found) == ({"a": 1} if is_read else {})
 
 
@@ -334,7 +334,7 @@ def test_files_are_named() -> None:
 
 def controllers(words: str) -> list[tuple[str | None, str | None, dict[str, Any]]] | None:
     """Return the names, namespaces and parameters of the controllers that a spawner with these arguments starts."""
-    found = controllers_of(
+    found = list_controllers(
         node(f"Node(package='controller_manager', executable='spawner', arguments=[{words}])")
     )
     if found is None:
@@ -343,7 +343,7 @@ def controllers(words: str) -> list[tuple[str | None, str | None, dict[str, Any]
         (
             it.node_name,
             it.namespace,
-            values(parameters_of(it, Installed(FILES).open_installed)),
+            values(collect_parameters(it, Installed(FILES).open_installed)),
         )
         for it in found
     ]
@@ -382,5 +382,5 @@ def test_a_text_is_what_rcl_reads_in_the_file_of_launch_ros(text: str) -> None:
         HEAD.format(NAMED.format("str(CONFIG / 'written.yaml')")).encode(), "a.launch.py", files
     )
     of_dict = given(NAMED.format(f"{{'a': {text!r}}}"))
-    expected = parameters_of(of_file.nodes[-1], Installed(files).open_installed)
+    expected = collect_parameters(of_file.nodes[-1], Installed(files).open_installed)
     assert values(of_dict) == values(expected)

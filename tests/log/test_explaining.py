@@ -58,7 +58,7 @@ def _explained(files: Mapping[str, str], log: str) -> list[LogAnswer]:
     problems = opened.package_problems()
     for robot in opened.robots:
         if isinstance(robot, Read):
-            problems += opened.problems_of(robot)
+            problems += opened.find_problems(robot)
     return [*explain_log(opened, problems, log.encode())]
 
 

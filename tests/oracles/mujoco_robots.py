@@ -13,7 +13,7 @@ import pytest
 from grader.base.transforms import Transform
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Cylinder, Joint, Link, Mesh, Sphere
-from grader.ros.urdf.rolling import Course, mean_of
+from grader.ros.urdf.rolling import Course, mean
 from tests.oracles.example_robots import MISSING
 
 mujoco: Any = pytest.importorskip("mujoco", reason=MISSING)
@@ -80,7 +80,7 @@ def travelled(course: Course) -> tuple[float, float, float]:
     along, across = 1.0, angle / 2.0
     if abs(angle) > 1e-9:
         along, across = sin(angle) / angle, (1.0 - cos(angle)) / angle
-    x, y, _ = mean_of(
+    x, y, _ = mean(
         [wheel.contact for wheel in course.wheels]
     )  # this point moves so, and the base turns about it
     moved_x = x - x * cos(angle) + y * sin(angle) + forward * along - left * across
@@ -96,7 +96,7 @@ def _document(
     robot: Configuration, base: str, wheels: Sequence[str], *, drives: bool, stiffness: int = 1
 ) -> str:
     """Return the robot as MJCF, on a plane, with a motor at each wheel."""
-    root = robot.root_of(base)
+    root = robot.find_root(base)
     turning = [robot.moving_joint(wheel) for wheel in wheels]
     is_weighed = any(link.inertial and link.inertial.mass > 0 for link in robot.robot.links)
     driven = {joint.name for joint in turning}

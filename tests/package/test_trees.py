@@ -8,7 +8,7 @@ from grader.base.errors import MissingElement, NotDecided
 from grader.base.source import Location
 from grader.files.tree import make_tree, overlaid
 from grader.ros.package.finding import read_packages
-from grader.ros.package.trees import Search, TreeEntry, is_path, read_tree, steps_of
+from grader.ros.package.trees import Search, TreeEntry, is_path, read_tree, split_path
 from tests.examples import examples
 
 pytestmark = pytest.mark.slow
@@ -26,7 +26,7 @@ def tree_of(text: str, file: str = "a.yaml") -> TreeEntry:
 
 def texts_at(tree: TreeEntry, path: str) -> list[str | None]:
     """Return the texts at a path."""
-    return [it.text for it in Search().find(tree, steps_of(path, is_xml=tree.is_xml))]
+    return [it.text for it in Search().find(tree, split_path(path, is_xml=tree.is_xml))]
 
 
 PATHS = [
@@ -74,9 +74,9 @@ def test_elements_and_attributes_are_found_with_their_places() -> None:
     tree = tree_of(
         "<sdf>\n<!-- <m/> -->\n<m name='a/b'><p>1 <!-- 3 -->2</p></m>\n<m name='c'/></sdf>", "a.sdf"
     )
-    [found] = Search().find(tree, steps_of("m[@name='a/b']/p", is_xml=True))
+    [found] = Search().find(tree, split_path("m[@name='a/b']/p", is_xml=True))
     assert (found.text, found.place) == ("1 2", Location("hub/a.sdf", 3, 15))
-    [name] = Search().find(tree, steps_of('m[@name="c"]/@name', is_xml=True))
+    [name] = Search().find(tree, split_path('m[@name="c"]/@name', is_xml=True))
     assert (name.text, name.place) == ("c", Location("hub/a.sdf", 4, 4))
 
 

@@ -14,11 +14,11 @@ from grader.ros.known.package_rows import usual_names
 from grader.ros.known.parameter_rows import (
     COVERED,
     ParameterRow,
+    find_rows,
     known_nodes,
     node_called,
     node_rows,
     row_for,
-    rows_of,
 )
 from grader.ros.known.releases import RELEASES, Release
 from grader.workspace.opening.all_robots import read_workspace
@@ -43,7 +43,7 @@ _TYPES: Mapping[str, tuple[Any, Any]] = {  # with a value, and one of another ty
 }
 _WORD = re.compile(r"[a-z]{5,}")
 Values = dict[str, Any]
-NODES = [node for node in known_nodes() if node not in _BASES and rows_of(node)]
+NODES = [node for node in known_nodes() if node not in _BASES and find_rows(node)]
 
 
 def _last_releases(node: str) -> Iterator[tuple[str, Release]]:

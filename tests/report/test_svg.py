@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from grader.base.text import format_points
-from grader.report.drawing.graded_picture import picture_of
+from grader.report.drawing.graded_picture import draw_report
 from grader.report.drawing.three_views import drawing_element
 from grader.report.formats import Format, render
 from grader.report.inspection import InspectedRobot, Inspection, main_root
@@ -82,7 +82,7 @@ def test_drawing_of_a_sample_is_well_formed_and_says_what_it_calls_out(name: str
     assert root.findtext("{*}title").endswith(
         f"{format_points(report.score)} / {format_points(report.max_score)} points"
     )
-    picture, said = picture_of(report), words(root)
+    picture, said = draw_report(report), words(root)
     for callout in picture.callouts if picture is not None else ():
         for criterion in callout.names:
             assert criterion in root.findtext("{*}desc")
@@ -95,7 +95,7 @@ def test_drawing_of_a_sample_is_well_formed_and_says_what_it_calls_out(name: str
 )
 def test_numbers_do_not_overlap(name: str) -> None:
     """The discs of all callouts are beside each other, inside the sheet, and there is one in each view."""
-    picture = picture_of(SAMPLES[name].grade())
+    picture = draw_report(SAMPLES[name].grade())
     assert picture is not None
     root = read_svg(drawing_element(picture, legend=False))
     _, _, width, height = map(float, root.get("viewBox").split())
@@ -107,7 +107,7 @@ def test_numbers_do_not_overlap(name: str) -> None:
 
 def test_twenty_numbers_at_one_place_do_not_overlap() -> None:
     """Each has a place of its own in each view."""
-    picture = picture_of(SAMPLES["lidar-buried"].grade())
+    picture = draw_report(SAMPLES["lidar-buried"].grade())
     assert picture is not None
     crowd = tuple(picture.callouts[0]._replace(number=number) for number in range(1, 21))
     centres = numbers_at(read_svg(drawing_element(replace(picture, callouts=crowd), legend=False)))

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.base.toml_file import TomlPath as Path
-from grader.base.toml_file import key_lines, line_of
+from grader.base.toml_file import find_line, key_lines
 from tests.examples import examples
 
 pytestmark = pytest.mark.slow
@@ -25,7 +25,7 @@ def test_a_missing_key_has_the_line_of_its_table() -> None:
         ("no",),
         (),
     )
-    assert [line_of(lines, path) for path in paths] == [1, 3, 4, 1, 1]
+    assert [find_line(lines, path) for path in paths] == [1, 3, 4, 1, 1]
     for text in ("", "\n", "# x", "\n\n# [a]\n"):
         assert key_lines(text) == {(): 1}
 
@@ -201,10 +201,10 @@ def test_every_key_has_its_line(document: tuple[str, dict[Path, int]], windows: 
     text, written = document
     data = tomllib.loads(text)
     lines = key_lines(text.replace("\n", "\r\n") if windows else text)
-    assert {path: line_of(lines, path) for path in written} == written
+    assert {path: find_line(lines, path) for path in written} == written
     for path in paths_of(data):
         known = path
         while known not in written and known:
             known = known[:-1]
         if known:
-            assert line_of(lines, path) == written[known]
+            assert find_line(lines, path) == written[known]

@@ -12,7 +12,7 @@ from grader.base.errors import InputError
 from grader.files.tree import File, Tree, make_tree
 from grader.lab.grading.grade import grade
 from grader.lab.submission.labs import LabFolders
-from grader.lab.submission.opening import open_submission, submission_of
+from grader.lab.submission.opening import make_submission, open_submission
 from grader.lab.submission.selection import UrdfChoice, UrdfSearch
 from grader.lab.submission.submission import DEFAULTS, Lab
 from grader.ros.package.finding import find_packages, read_packages
@@ -405,7 +405,7 @@ def test_very_many_urdfs() -> None:
         *(f"p{n % 200}/{n}/{n % 80}.urdf" for n in range(5000)), **{str(n): text for n in range(10)}
     )
     with limited_work(40_000_000):
-        found = submission_of(tree, "many", Lab(EXPECTED, "my_robot", ("Lab6",)))
+        found = make_submission(tree, "many", Lab(EXPECTED, "my_robot", ("Lab6",)))
     assert len(found.other_candidates) == 4999
 
 
@@ -519,7 +519,7 @@ def team(first: list[str], second: list[str]) -> Tree:
 
 def test_a_team_is_not_mixed_up() -> None:
     """One member's package is not graded with the other's URDF, even if that has a better name, and a note names both."""
-    found = submission_of(
+    found = make_submission(
         team(["package.xml", "robot.urdf"], ["package.xml", "urdf/my_robot.urdf"]),
         "team",
         Lab(EXPECTED, "my_robot"),
@@ -544,12 +544,12 @@ def test_a_package_with_the_labs_files_takes_precedence() -> None:
         ),
         package=manifest("my_robot"),
     )
-    found = submission_of(tree, "a", Lab(EXPECTED, "my_robot"))
+    found = make_submission(tree, "a", Lab(EXPECTED, "my_robot"))
     assert found.path == "Lab6/my_robot/urdf/my_robot.urdf"
     assert found.package is not None
     assert found.package.folder == "Lab6/my_robot"
     stub = team(["package.xml"], ["package.xml", "setup.py", "rviz/a.rviz"])
-    package = submission_of(stub, "a", Lab(EXPECTED, "my_robot")).package
+    package = make_submission(stub, "a", Lab(EXPECTED, "my_robot")).package
     assert package is not None
     assert package.folder == "Lab6/Brown/my_robot"
 
@@ -564,7 +564,7 @@ def test_a_description_package() -> None:
         package=manifest("my_robot"),
     )
     assert (
-        submission_of(tree, "a", Lab(EXPECTED, "my_robot")).path
+        make_submission(tree, "a", Lab(EXPECTED, "my_robot")).path
         == "my_robot_description/urdf/my_robot.urdf"
     )
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from grader.files.tree import File, make_tree
-from grader.lab.submission.opening import submission_of
+from grader.lab.submission.opening import make_submission
 from grader.lab.submission.submission import Lab, Submission
 
 FOLDERS = ("Lab6",)
@@ -34,7 +34,7 @@ def submission(
     """Return the submission that these files make for lab 6; `generated` are paths of a build."""
     found = [File(path, len(data), partial(_read, data)) for path, data in files.items()]
     tree = make_tree("repo", found, (), generated=generated)
-    return submission_of(tree, "repo", Lab("urdf/my_robot.urdf", "my_robot", folders))
+    return make_submission(tree, "repo", Lab("urdf/my_robot.urdf", "my_robot", folders))
 
 
 def others(graded: Submission) -> dict[str, str]:

@@ -227,7 +227,7 @@ def test_poses_are_products_along_the_tree(tree: Robot, draw: st.DataObject) -> 
         step = transform(joint.origin) @ motion(joint, positions.get(joint.name, 0.0))
         expected = configuration.pose(joint.parent) @ step
         assert near(configuration.pose(joint.child), expected, within=1e-8)
-        assert configuration.root_of(joint.child) == "l0"
+        assert configuration.find_root(joint.child) == "l0"
 
 
 @pytest.mark.slow
@@ -285,7 +285,7 @@ def test_missing_links_and_joints() -> None:
         lambda: configuration.chain("b", above="x"),
         lambda: configuration.between("a", "x"),
         lambda: configuration.between("x", "a"),
-        lambda: configuration.root_of("x"),
+        lambda: configuration.find_root("x"),
         lambda: configuration.link("x"),
         lambda: configuration.joint("x"),
         lambda: configuration.axis("x"),
@@ -353,7 +353,7 @@ def test_an_unreadable_origin_begins_a_frame_group() -> None:
             MissingElement, match=r"is undefined: the joint's origin cannot be read .joint 'bc'"
         ):
             configuration.pose(one, relative_to=other)
-    assert configuration.root_of("e") == "a"
+    assert configuration.find_root("e") == "a"
     assert [joint.name for joint in configuration.between("e", "a")] == ["ce", "bc", "ab"]
 
 
@@ -418,7 +418,7 @@ def test_links_on_a_loop_have_no_pose(ring: str) -> None:
         with pytest.raises(MissingElement):
             configuration.pose(link, relative_to="v")
         with pytest.raises(MissingElement):
-            configuration.root_of(link)
+            configuration.find_root(link)
         with pytest.raises(MissingElement):
             configuration.between(link, "v")
         assert configuration.chain(link, above="v") is None

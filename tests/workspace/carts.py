@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 
 from grader.files.tree import make_tree, overlaid
-from grader.lab.submission.opening import submission_of
+from grader.lab.submission.opening import make_submission
 from grader.lab.submission.submission import Lab, Submission
 from grader.workspace.rules.names import Agreement, Mismatch
 from grader.workspace.rules.reading import read_agreement
@@ -40,7 +40,7 @@ def edited(*edits: Edit) -> dict[str, str]:
 
 def cart(texts: Mapping[str, str], lab: Lab = LAB) -> Submission:
     """Return a submission of these files."""
-    return submission_of(
+    return make_submission(
         overlaid(make_tree("cart", (), ()), {path: text.encode() for path, text in texts.items()}),
         "cart",
         lab,

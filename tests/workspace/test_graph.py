@@ -4,7 +4,7 @@ from pathlib import Path
 
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab
-from grader.workspace.graph.graph import Graph, graph_of
+from grader.workspace.graph.graph import Graph, make_graph
 from tests.workspace.rule_examples import EXAMPLES, files_of_example
 
 
@@ -14,7 +14,7 @@ def graph_in(folder: Path, name: str, text: str) -> Graph:
     for path, content in files.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_text(content, encoding="utf-8")
-    return graph_of(open_submission(str(folder), Lab("urdf/rover.urdf", "rover")).workspace)
+    return make_graph(open_submission(str(folder), Lab("urdf/rover.urdf", "rover")).workspace)
 
 
 def nodes_of(graph: Graph) -> list[tuple[str | None, str, bool | None, bool]]:

@@ -35,7 +35,7 @@ def _found(files: Mapping[str, bytes], memory: Memory | None) -> list[Problem]:
     found = opened.package_problems()
     for robot in opened.robots:
         if isinstance(robot, Read):
-            found += opened.problems_of(robot)
+            found += opened.find_problems(robot)
     return found
 
 

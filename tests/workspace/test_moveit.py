@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from grader.files.tree import make_tree, overlaid
-from grader.lab.submission.opening import submission_of
+from grader.lab.submission.opening import make_submission
 from grader.lab.submission.submission import Lab
 from grader.workspace.rules.reading import read_agreement
 from tests.command_line import run
@@ -65,7 +65,7 @@ def found_in(
     }
     texts = {path: text.encode() for path, text in {**_FILES, **changed}.items() if text}
     tree = overlaid(make_tree("arm", (), ()), {**files, **texts})
-    found = read_agreement(submission_of(tree, "arm", Lab(urdf)).workspace)
+    found = read_agreement(make_submission(tree, "arm", Lab(urdf)).workspace)
     return [
         it.message
         for it in found.mismatches

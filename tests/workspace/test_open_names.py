@@ -440,7 +440,7 @@ def test_what_is_not_known_of_a_robot_is_one_line() -> None:
     )
     kit = _kit(robot=robot)
     [one] = [it for it in kit.robots if it.path.endswith("kit.urdf.xacro")]
-    problems = kit.problems_of(one)  # type: ignore[arg-type]
+    problems = kit.find_problems(one)  # type: ignore[arg-type]
     assert [it.code for it in problems] == ["XACRO006"]
     assert "more place" in problems[0].message
 
@@ -452,7 +452,7 @@ def test_links_after_an_error_of_xacro_are_not_missing() -> None:
         '<joint name="t" type="fixed"><parent link="tip"/><child link="base"/></joint>'
     )
     kit = _kit(robot=robot)
-    problems = [it for one in kit.robots for it in kit.problems_of(one)]  # type: ignore[arg-type]
+    problems = [it for one in kit.robots for it in kit.find_problems(one)]  # type: ignore[arg-type]
     assert {it.code for it in problems if it.severity == "error"} == {"XACRO003"}
 
 
@@ -547,7 +547,7 @@ def test_an_argument_may_choose_the_plugin_of_hardware() -> None:
     chosen = "<xacro:if value=\"${'$(arg tool)' == 'sim'}\"><plugin>a/B</plugin></xacro:if>"
     for plugin, codes in ((chosen, []), ("", ["URDF097"])):
         kit = _kit(robot=text.replace("PLUGIN", plugin))
-        assert [it.code for one in kit.robots for it in kit.problems_of(one)] == codes  # type: ignore[arg-type]
+        assert [it.code for one in kit.robots for it in kit.find_problems(one)] == codes  # type: ignore[arg-type]
 
 
 def test_a_package_inside_another_one_is_not_built() -> None:
@@ -588,7 +588,7 @@ def test_a_default_that_xacro_fails_at_is_not_assumed() -> None:
         "'kit.urdf.xacro'])", "'kit.urdf.xacro']), ' model:=', open('m').read()"
     )
     kit = _kit({"src/kit/launch/kit.launch.py": launch.replace("MORE", "")}, robot=robot)
-    codes = {it.code for one in kit.robots for it in kit.problems_of(one)}  # type: ignore[arg-type]
+    codes = {it.code for one in kit.robots for it in kit.find_problems(one)}  # type: ignore[arg-type]
     assert codes == {"XACRO006"}
 
 

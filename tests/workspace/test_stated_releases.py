@@ -7,7 +7,7 @@ import pytest
 from grader.files.folder import read_folder
 from grader.files.opening import open_tree
 from grader.files.tree import make_tree, overlaid
-from grader.lab.submission.opening import submission_of
+from grader.lab.submission.opening import make_submission
 from grader.lab.submission.submission import Lab
 from grader.ros.known.releases import RELEASES, Release, StatedReleases, other_name
 from grader.workspace.model.stated_releases import stated_releases
@@ -146,6 +146,6 @@ def test_names_are_compared_with_the_release_of_a_rubric(
         ),
     }
     tree = overlaid(make_tree("ws", (), ()), {path: it.encode() for path, it in texts.items()})
-    submission = submission_of(tree, "ws", Lab("robot.urdf", distro=distro))
+    submission = make_submission(tree, "ws", Lab("robot.urdf", distro=distro))
     found = read_agreement(submission.workspace).mismatches
     assert sum(it.is_certain for it in found) == wrong

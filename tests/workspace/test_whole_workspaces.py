@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pytest
 
 from grader.files.tree import make_tree, overlaid
-from grader.lab.submission.opening import submission_of
+from grader.lab.submission.opening import make_submission
 from grader.lab.submission.submission import Lab, Submission
 from grader.workspace.rules.reading import read_agreement
 
@@ -50,7 +50,7 @@ def package(
 def workspace(*packages: Mapping[str, str]) -> Submission:
     """Return a workspace of packages, read without a rubric."""
     texts = {path: text.encode() for files in packages for path, text in files.items()}
-    return submission_of(overlaid(make_tree("ws", (), ()), texts), "ws", Lab("robot.urdf"))
+    return make_submission(overlaid(make_tree("ws", (), ()), texts), "ws", Lab("robot.urdf"))
 
 
 def errors_in(*packages: Mapping[str, str]) -> list[str]:

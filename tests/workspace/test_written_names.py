@@ -59,7 +59,7 @@ def test_what_a_finding_is_about_is_in_the_file(folder: Path) -> None:
     problems = [*opened.package_problems()]
     for robot in opened.robots:
         if isinstance(robot, Read):
-            problems += opened.problems_of(robot)
+            problems += opened.find_problems(robot)
     for problem in problems:
         at = ended(problem.location, opened.source)
         source = opened.source(at.path)
@@ -311,7 +311,7 @@ def _problems(opened: OpenedWorkspace) -> Counter[tuple[str, str, int]]:
     found = [*opened.package_problems()]
     for robot in opened.robots:
         if isinstance(robot, Read):
-            found += opened.problems_of(robot)
+            found += opened.find_problems(robot)
     return Counter((it.code, it.location.path, it.location.line) for it in found)
 
 

@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError, requires
 from pathlib import Path, PurePosixPath
 
 from grader.base.errors import InputError
-from grader.files.zip_writing import zip_of
+from grader.files.zip_writing import make_zip
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import RUBRIC_FILE, Rubric, shipped_rubrics
 
@@ -50,7 +50,7 @@ def autograder_zip(rubric: Rubric) -> bytes:
         files[RUBRIC_FILE] = rubric.data
     folder = f"{_PACKAGE.name}/rubrics/{rubric.id}" if rubric.is_shipped else ""
     files |= {str(PurePosixPath(folder, path)): data for path, data in _reference(rubric).items()}
-    return zip_of(files, _EXECUTABLES)
+    return make_zip(files, _EXECUTABLES)
 
 
 def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
@@ -72,7 +72,7 @@ def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
             )
     elif not rubric.reference or rubric.hints == "none" or is_outside:
         return {}
-    return _files_of(rubric.path.parent / rubric.reference, rubric.path.parent)
+    return _read_files(rubric.path.parent / rubric.reference, rubric.path.parent)
 
 
 def package_files() -> dict[str, bytes]:
@@ -83,7 +83,7 @@ def package_files() -> dict[str, bytes]:
     data = ("rubrics", "examples")  # in a wheel; in a checkout they are outside of the package
     own_files = {
         path: content
-        for path, content in _files_of(_PACKAGE, _PACKAGE).items()
+        for path, content in _read_files(_PACKAGE, _PACKAGE).items()
         if path.parts[0] not in data
     }
     rubrics = {
@@ -93,7 +93,7 @@ def package_files() -> dict[str, bytes]:
     return {str(_PACKAGE.name / path): data for path, data in (own_files | rubrics).items()}
 
 
-def _files_of(place: Path, root: Path) -> dict[PurePosixPath, bytes]:
+def _read_files(place: Path, root: Path) -> dict[PurePosixPath, bytes]:
     """Return the files at or below a place by their paths from a folder.
 
     Without those of editors and Python.

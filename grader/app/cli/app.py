@@ -124,7 +124,7 @@ def _run(arguments: Sequence[str]) -> int:
         if isinstance(result, str):
             write_stdout(result)
     except (GraderError, OSError) as error:
-        reason = _reason_of(error) if isinstance(error, OSError) else str(error)
+        reason = _describe_error(error) if isinstance(error, OSError) else str(error)
         if isinstance(error, NotThereError):
             from grader.app.cli.usage import message_on_path  # late: most paths are correct
 
@@ -143,7 +143,7 @@ def _run(arguments: Sequence[str]) -> int:
     return result if isinstance(result, int) else ExitCode.PASSED
 
 
-def _reason_of(error: OSError) -> str:
+def _describe_error(error: OSError) -> str:
     what = f"use {printable_path(error.filename)}" if isinstance(error.filename, str) else "write"
     return f"cannot {what}: {error.strerror or error}"
 

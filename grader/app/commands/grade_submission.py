@@ -5,20 +5,23 @@ from pathlib import Path
 
 from grader.app.grading import GradeRequest, GradeRun, grade_submission, save_reports
 from grader.app.saving import check_saves
-from grader.lab.rubric.rubric_files import files_of
+from grader.lab.rubric.rubric_files import list_files
 from grader.report.writing import Warn
 
 
 def grade_and_save(request: GradeRequest, warn: Warn, show: Callable[[GradeRun], None]) -> GradeRun:
     """Grade a submission, show its report, and save reports and fixed files. Raises GraderError."""
-    rubric = files_of(request.rubric, request.answers) if request.saves else ()
+    rubric = list_files(request.rubric, request.answers) if request.saves else ()
     check_saves(request.saves, rubric, request.path)
     run = grade_submission(request, warn)
     files: Mapping[Path, bytes] = {}
     if request.fix is not None and run.fix is not None:
         from grader.app.hints_and_fix import files_to_fix  # late: few ask for it
 
-        others = [*files_of(request.rubric, request.answers), *(file for _, file in request.saves)]
+        others = [
+            *list_files(request.rubric, request.answers),
+            *(file for _, file in request.saves),
+        ]
         files = files_to_fix(request.fix, request.path, run.report, run.fix, run.besides, others)
     show(run)
     save_reports(request, run)

@@ -23,7 +23,7 @@ from grader.files.tree import overlaid
 from grader.report.formats import InspectFormat, render_inspection
 from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.invocation import Saves, read_arguments, read_saves
-from grader.report.repository import base_of, folder_of
+from grader.report.repository import find_base, find_folder
 from grader.report.screen import Screen
 from grader.report.writing import Terminal, Warn
 from grader.ros.api import Absent, Configuration, Read, Reading, Release, StatedReleases, Unreadable
@@ -167,13 +167,13 @@ def inspect_opened(
         )
     for robot in unread:
         warn(robot.reason)
-    base = base_of(path, None)
+    base = find_base(path, None)
     if request.robot:
         chosen = _named(request.robot, read)
         shown = _inspected(opened, chosen, joints, relative_to)
         inspection = Inspection(chosen.path, (shown,), source_of=opened.source, base=base)
         inspection = _with_log(inspection, opened, request.log)
-        return without_ignored(inspection, opened.whole_tree, _texts_of(chosen), selection)
+        return without_ignored(inspection, opened.whole_tree, _list_texts(chosen), selection)
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
     problems, extent = opened.package_problems(), opened.extent()
@@ -203,15 +203,15 @@ def _inspect_file(
     for note in (*_notes(urdf), *opened.notes):
         warn(note)
     robot = _inspected(opened, urdf, request.joint or (), request.relative_to)
-    folder = folder_of(request.path, opened.path)
-    base = base_of(request.path, folder)
+    folder = find_folder(request.path, opened.path)
+    base = find_base(request.path, folder)
     besides = [folder / path for path in opened.besides]
     inspection = Inspection(
         urdf.path, (robot,), source_of=opened.source, base=base, besides=tuple(besides)
     )
     inspection = _with_log(inspection, opened, request.log)
     tree = overlaid(opened.whole_tree, {urdf.path: urdf.data})
-    return without_ignored(inspection, tree, _texts_of(urdf), selection._replace(folder=folder))
+    return without_ignored(inspection, tree, _list_texts(urdf), selection._replace(folder=folder))
 
 
 def _with_log(inspection: Inspection, opened: OpenedWorkspace, log: bytes | None) -> Inspection:
@@ -223,7 +223,7 @@ def _with_log(inspection: Inspection, opened: OpenedWorkspace, log: bytes | None
     return replace(inspection, log=explain_log(opened, inspection.problems, log))
 
 
-def _texts_of(urdf: Read) -> list[str]:
+def _list_texts(urdf: Read) -> list[str]:
     """Return the files that a robot is read from."""
     return [*dict.fromkeys((urdf.path, *getattr(urdf.reading.source, "documents", ())))]
 
@@ -276,7 +276,7 @@ def _inspected(
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
     reading = urdf.loaded._replace(problems=opened.problems_once(urdf, of_packages))
-    meshes = opened.meshes_of(urdf)
+    meshes = opened.load_meshes(urdf)
     inspected = InspectedRobot(urdf.path, reading, robot, relative_to, meshes=meshes)
     driven = opened.driven_joints(urdf)
     if robot is None or not driven or not all(map(robot.robot.has_joint, driven)):

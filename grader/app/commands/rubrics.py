@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.base.errors import GraderError, RubricError
 from grader.base.text import counted, format_points, printable, printable_path, shell_quoted
-from grader.lab.rubric.rubric_files import files_of, load_named
+from grader.lab.rubric.rubric_files import list_files, load_named
 from grader.report.invocation import ExitCode
 from grader.report.writing import Warn, make_folder, save_bytes
 
@@ -41,7 +41,7 @@ def copy(name: str, folder: Path) -> str:
         )
     copies = {
         source: folder / name / source.relative_to(file.parent)
-        for source in files_of(name)
+        for source in list_files(name)
         if source.exists()
     }
     if there := [*filter(os.path.lexists, copies.values())]:

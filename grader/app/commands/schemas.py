@@ -11,9 +11,9 @@ def json_schema(name: str) -> dict[str, Any]:
         return rubric_schema()
     if name in ("class", "diff"):
         from grader.classroom.reports.class_json import CLASS, DIFF
-        from grader.report.json_data import schema_of
+        from grader.report.json_data import make_schema
 
-        return schema_of(name, CLASS if name == "class" else DIFF)
+        return make_schema(name, CLASS if name == "class" else DIFF)
     from grader.report import formats
 
     return formats.json_schema(name)

@@ -22,7 +22,7 @@ from grader.base.processor_time import GRADE_SECONDS
 from grader.base.text import enumerated, format_points, printable, signed_points
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.rubric import find_rubric, shipped_rubrics
-from grader.lab.rubric.rubric_files import files_of
+from grader.lab.rubric.rubric_files import list_files
 from grader.report.criteria import alike
 from grader.report.formats import Format, render
 from grader.report.writing import Terminal
@@ -48,7 +48,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> None:
     """
     saves = request.saves
     watched = _watched(request)
-    rubric = files_of(request.rubric, request.answers) if saves else ()
+    rubric = list_files(request.rubric, request.answers) if saves else ()
     check_saves(saves, rubric, request.path)
     _ = request.threshold  # refuse a wrong one at once
     last: Report | None = None

@@ -6,7 +6,7 @@ from grader.base.source import Edits
 from grader.files.tree import Tree
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric_files import load_named
-from grader.lab.submission.opening import submission_of
+from grader.lab.submission.opening import make_submission
 from grader.report.mistakes import mistakes_in_report
 
 
@@ -22,7 +22,7 @@ def grade_files(name: str, tree: Tree, identity: str) -> Graded:
         GraderError: The rubric or the files cannot be read.
     """
     rubric = load_named(name, None)
-    submission = submission_of(tree, identity, rubric.lab)
+    submission = make_submission(tree, identity, rubric.lab)
     report = grade(rubric, submission)
     report, _ = add_hints(report, submission, None, lambda _: None, is_fixed=False)
     fixes: dict[Edits, ProvenFix] = {}

@@ -36,7 +36,7 @@ def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
         place_of_name.owner for place_of_name in same if place_of_name.location.path == place.path
     }
     rows += _of_robots(look, name.kind, name.name, owners)
-    rows += map(_plain, look.names.texts_of(name))
+    rows += map(_plain, look.names.list_texts(name))
     rows += (f"value: {_code(value)}" for value in look.names.values(name)[:_MAX_NAMED])
     if name.kind == "parameter":
         rows += _parameter_rows(look, place)

@@ -55,7 +55,7 @@ class _Shown:
         return self.finding.message
 
 
-def diagnostics_of(
+def make_diagnostics(
     look: Look, root: Path, graded: Sequence[Mistake] = ()
 ) -> dict[str, list[lsp.Diagnostic]]:
     """Return what is wrong with the files of a folder, by their paths.

@@ -128,7 +128,7 @@ class EditedFiles:
         data = self.tree().read(path, URDF_LIMIT)
         return (data or b"").decode("utf-8", "replace")
 
-    def path_of(self, file: Path) -> str | None:
+    def find_path(self, file: Path) -> str | None:
         """Return the path of a file in the folder; None for one outside of it."""
         try:
             path = file.relative_to(self.root)

@@ -29,7 +29,7 @@ from grader.app.editor import (
     signatures,
     symbols,
 )
-from grader.app.editor.diagnostics import SOURCE, diagnostics_of
+from grader.app.editor.diagnostics import SOURCE, make_diagnostics
 from grader.app.editor.edited_files import EditedFiles
 from grader.app.editor.look import Look
 from grader.app.editor.reading_limits import ReadingLimits, SharedPath
@@ -108,7 +108,7 @@ class _GraderServer(LanguageServer):
             self.refresh(root)
         return self.sessions[root]
 
-    def session_of(self, uri: str) -> tuple[EditorSession, str] | None:
+    def find_session(self, uri: str) -> tuple[EditorSession, str] | None:
         """Return the session that a file belongs to, with its path there.
 
         None for a file outside of the folders. In an editor without a folder it is that of
@@ -121,11 +121,11 @@ class _GraderServer(LanguageServer):
         roots = [root for root in self.sessions if file.is_relative_to(root)]
         around = max(roots, key=lambda root: len(root.parts), default=None)
         if around is None and not self.workspace.folders:
-            around = _folder_of(file)
+            around = _choose_folder(file)
         if around is None:
             return None
         session = self.session_in(around)
-        path = session.files.path_of(file)
+        path = session.files.find_path(file)
         return (session, path) if path is not None else None
 
     def report_server_error(self, error: Exception, source: Any) -> None:
@@ -133,7 +133,7 @@ class _GraderServer(LanguageServer):
 
     def change(self, uri: str, change: Callable[[EditedFiles, str], None]) -> None:
         """Change the files of a session, and look at them again soon."""
-        session_and_path = self.session_of(uri)
+        session_and_path = self.find_session(uri)
         if session_and_path is not None:
             session, path = session_and_path
             session.change(lambda files: change(files, path))
@@ -172,14 +172,14 @@ class _GraderServer(LanguageServer):
         try:
             is_due = self._is_due(root)
             look = await self.in_thread(lambda: session.look(ends_anyway=is_due))
-            diagnostics = await self.in_thread(partial(diagnostics_of, look, root))
+            diagnostics = await self.in_thread(partial(make_diagnostics, look, root))
             self._publish(root, diagnostics)
             self._changed.pop(root, None)
             self.protocol.notify(LOOKED)
             self._complain(session.complaint)
             graded = await self.in_thread(lambda: look.graded.mistakes)
             if graded:
-                diagnostics = await self.in_thread(partial(diagnostics_of, look, root, graded))
+                diagnostics = await self.in_thread(partial(make_diagnostics, look, root, graded))
                 self._publish(root, diagnostics)
             seconds = time.monotonic() - start
             files = counted(len(look.tree.files), "file")
@@ -226,7 +226,7 @@ class _GraderServer(LanguageServer):
 
         None where there is none.
         """
-        session_and_path = self.session_of(uri)
+        session_and_path = self.find_session(uri)
         if session_and_path is None:
             return None
         session, path = session_and_path
@@ -243,7 +243,7 @@ class _GraderServer(LanguageServer):
             return None
 
 
-def _folder_of(file: Path) -> Path | None:
+def _choose_folder(file: Path) -> Path | None:
     """Return the folder to look at for a single file; None where it is no part of a robot."""
     for folder in file.parents:
         if (folder / _MANIFEST).is_file():
@@ -340,17 +340,17 @@ def _offer_changes(server: _GraderServer) -> None:
     """Let a server list names, links and what can be folded, correct problems, and rename."""
 
     @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
-    async def symbols_of(ls: _GraderServer, params: lsp.DocumentSymbolParams) -> Any:
+    async def answer_symbols(ls: _GraderServer, params: lsp.DocumentSymbolParams) -> Any:
         start = lsp.Position(0, 0)
         return await ls.answer(params.text_document.uri, start, symbols.in_document)
 
     @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_LINK)
-    async def links_of(ls: _GraderServer, params: lsp.DocumentLinkParams) -> Any:
+    async def answer_links(ls: _GraderServer, params: lsp.DocumentLinkParams) -> Any:
         start = lsp.Position(0, 0)
         return await ls.answer(params.text_document.uri, start, places.links)
 
     @server.feature(lsp.TEXT_DOCUMENT_FOLDING_RANGE)
-    async def folding_of(ls: _GraderServer, params: lsp.FoldingRangeParams) -> Any:
+    async def answer_folding(ls: _GraderServer, params: lsp.FoldingRangeParams) -> Any:
         document = ls.workspace.get_text_document(params.text_document.uri)
         ranges = partial(folding.folding_ranges, document.path, document.source)
         return await ls.in_thread(ranges)

@@ -254,7 +254,7 @@ class Supervisor:
                 self._texts.pop(params["textDocument"]["uri"], None)
             case lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES:
                 for change in params["changes"]:
-                    self._skipped.pop(_path_of(change["uri"]), None)
+                    self._skipped.pop(_read_path(change["uri"]), None)
 
     def _change(self, params: lsp.DidChangeTextDocumentParams) -> None:
         document = self._texts.get(params.text_document.uri)
@@ -262,7 +262,7 @@ class Supervisor:
             for change in params.content_changes:
                 document.apply_change(change)
             document.version = params.text_document.version
-            self._skipped.pop(_path_of(document.uri), None)
+            self._skipped.pop(_read_path(document.uri), None)
 
     def _take_from_worker(self, worker: _Worker, data: bytes) -> None:
         if not data:
@@ -295,7 +295,7 @@ class Supervisor:
         """Keep the texts that were looked at."""
         self._ended = 0
         for uri, document in self._texts.items():
-            path = _path_of(uri)
+            path = _read_path(uri)
             if path not in self._skipped:
                 self._seen[uri] = document.source
                 self._named.discard(path)
@@ -338,7 +338,7 @@ class Supervisor:
         slow = None
         for uri, document in self._texts.items():
             before = self._seen.get(uri)
-            changed = _path_of(uri)
+            changed = _read_path(uri)
             if before not in (None, document.source) and changed not in self._skipped:
                 causes[changed] = SkippedText(document.source, before)
             if changed == path:
@@ -387,7 +387,7 @@ class Supervisor:
 _WHAT_IS_SHOWN = "it is read again when it changes, and until then what was found before is shown"
 
 
-def _path_of(uri: str) -> str:
+def _read_path(uri: str) -> str:
     """Return the real path of a file; empty for what is no file."""
     path = to_fs_path(uri)
     return os.path.realpath(path) if path else ""

@@ -28,7 +28,7 @@ class Lines:
         before = text[: max(column, 1) - 1]
         return lsp.Position(max(line, 1) - 1, _units(before))
 
-    def position_of(self, offset: int) -> lsp.Position:
+    def make_position(self, offset: int) -> lsp.Position:
         """Return the position of a character offset."""
         place = self._source.at(offset)
         return self.position(place.line, place.column)
@@ -92,8 +92,8 @@ class TextRanges:
         for edit in edits:
             lines = self.lines(edit.path)
             start = lines.offset(edit.line, edit.column)
-            end = lines.position_of(start + len(edit.old))
-            extent = lsp.Range(lines.position_of(start), end)
+            end = lines.make_position(start + len(edit.old))
+            extent = lsp.Range(lines.make_position(start), end)
             changes.setdefault(self.uri(edit.path), []).append(lsp.TextEdit(extent, edit.new))
         return lsp.WorkspaceEdit(changes=dict(changes))
 

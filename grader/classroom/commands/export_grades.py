@@ -196,11 +196,11 @@ def _comment(book: Gradebook, grade: StudentGrade, total: Decimal, *, has_open_z
     """Return what a student reads of a grade in the LMS."""
     from grader.classroom.reports import class_reports
 
-    report = class_reports.report_of(book, grade, has_hints=False)
+    report = class_reports.make_report(book, grade, has_hints=False)
     lost = () if grade.has_final else lost_points(report.results, has_open_zeros=has_open_zeros)
     exported = format_points(total.quantize(Decimal("0.01"), ROUND_FLOOR))
     opening = f"Grade: {exported} of {format_points(book.maximum)} points."
-    return comment_html(opening, [*lost, *class_reports.notes_of(grade, report)])
+    return comment_html(opening, [*lost, *class_reports.list_notes(grade, report)])
 
 
 def _feedback(

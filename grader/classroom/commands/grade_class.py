@@ -41,13 +41,13 @@ from grader.classroom.marks.gradebook_folder import (
 from grader.classroom.reports.class_figures import append_run, warn_of_ignored
 from grader.classroom.reports.class_reports import ReportRun, refuse_report_folder, write_reports
 from grader.classroom.reports.class_terminal import ClassTable
-from grader.classroom.results.equal_work import hashes_of
+from grader.classroom.results.equal_work import hash_handed_out
 from grader.classroom.results.results import (
     Results,
     ResultsWriter,
     Run,
     RunGrade,
-    digest_of,
+    hash_values,
     time_of_run,
 )
 from grader.classroom.roster.lateness import read_time, time_text
@@ -56,9 +56,9 @@ from grader.classroom.run.batch_run import Batch
 from grader.classroom.run.batch_worker import ClassContext, reference_hashes
 from grader.classroom.run.preloading import PRELOAD
 from grader.classroom.tables import SIZE_LIMIT
-from grader.files.reading import read_capped, sha256_of
+from grader.files.reading import hash_bytes, read_capped
 from grader.lab.rubric.rubric import Rubric, load_rubric
-from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC, files_of
+from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC, list_files
 from grader.lab.submission.opening import open_submission
 from grader.report.formats import Format, OutputFormat
 from grader.report.invocation import read_arguments
@@ -229,7 +229,7 @@ def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
     Raises InputError for a file without any.
     """
     for path in files:
-        hashes = hashes_of(open_submission(str(path), rubric.lab), rubric)
+        hashes = hash_handed_out(open_submission(str(path), rubric.lab), rubric)
         if not hashes:
             raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF in it")
         yield from hashes
@@ -243,7 +243,7 @@ def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _Cl
     folder, settings, rubric = inputs.folder, inputs.settings, inputs.rubric
     if options.roster is not None:
         roster, copy = _read_csv(options.roster), folder / names.ROSTER
-        roster_hash = sha256_of(roster)
+        roster_hash = hash_bytes(roster)
         _warn_of_edits(copy, (settings.roster_hash, roster_hash), options.roster, warn)
         save_bytes(copy, roster, inputs.roots, _PRIVATE)
         settings = replace(settings, roster_hash=roster_hash)
@@ -263,7 +263,7 @@ def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _Cl
 
 def _warn_of_edits(file: Path, known: Sequence[str], new: Path, warn: Warn) -> None:
     """Say that a copy which a person has edited is replaced."""
-    if file.is_file() and sha256_of(_read_csv(file)) not in known:
+    if file.is_file() and hash_bytes(_read_csv(file)) not in known:
         warn(f"{printable_path(file)} was edited: it is replaced by {printable_path(new)}")
 
 
@@ -279,7 +279,7 @@ def _copy_rubric(folder: Path, rubric: Rubric) -> str:
     target, rubric_file = folder / names.RUBRIC, rubric.path.resolve()
     is_movable = not Path(rubric.reference).is_absolute()
     sources = []
-    for file in files_of(str(rubric.path)):
+    for file in list_files(str(rubric.path)):
         is_copied = file.name != rubric.answers and file.exists()
         if is_copied and (is_movable or file == rubric.path):
             sources.append(file.resolve())
@@ -448,8 +448,8 @@ def _context(inputs: _ClassInputs) -> str:
     files = sorted(path for path in (folder / names.RUBRIC).rglob("*") if path.is_file())
     contents = [(path.relative_to(folder).as_posix(), path.read_bytes()) for path in files]
     options = settings.parts, sorted(settings.arguments.items()), settings.max_size
-    reference = sha256_of(repr(contents).encode())
-    return digest_of(inputs.rubric.sha256, reference, *options, __version__, _FORMAT)
+    reference = hash_bytes(repr(contents).encode())
+    return hash_values(inputs.rubric.sha256, reference, *options, __version__, _FORMAT)
 
 
 def _batch(

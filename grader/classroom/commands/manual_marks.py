@@ -17,7 +17,7 @@ from grader.base.text import (
     printable,
     printable_path,
 )
-from grader.classroom.gradebook.gradebook import Gradebook, points_of
+from grader.classroom.gradebook.gradebook import Gradebook, list_points
 from grader.classroom.gradebook.grades_file import write_grades_with
 from grader.classroom.gradebook.review_items import review_items
 from grader.classroom.gradebook.student_grade import Reason, StudentGrade
@@ -119,7 +119,7 @@ def import_marks(gradebook: Path, file: Path, by: str, warn: Warn) -> str:
     answers = {}
     for place, item in review_items(book, with_final=True).items():
         answers[place] = [member.student.key for member in item.members]
-    points = {grade.student.key: points_of(book, grade) for grade in book}
+    points = {grade.student.key: list_points(book, grade) for grade in book}
     reader = _mark_import(book)._replace(answers=answers, points=points)
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
     _append_marks(book, new, by, warn)

@@ -71,7 +71,7 @@ def snapshot(folder: Path, number: int | None) -> Snapshot:
         if grade.is_marked_early:
             early.add(key)
     results, run = book.results, book.run_with(grades)
-    is_recorded = not results.unfinished and run.has_grades_of(book.run)
+    is_recorded = not results.unfinished and run.has_equal_grades(book.run)
     if number is not None:
         if not 0 < number <= run.run:
             raise InputError(f"{printable_path(folder)} has no run {number}: it has 1 to {run.run}")

@@ -26,7 +26,7 @@ from grader.classroom.results.results import (
     Run,
     RunGrade,
     StoredResult,
-    digest_of,
+    hash_values,
 )
 from grader.classroom.roster.lateness import Lateness, lateness
 from grader.classroom.roster.roster import Roster, Student, read_roster
@@ -160,11 +160,11 @@ class Gradebook:
             pending,
             late.days,
             format_points(late.points) if late.points else "",
-            self._deadline_of(student),
+            self._write_deadline(student),
             marks,
         )
 
-    def _deadline_of(self, student: Student) -> str:
+    def _write_deadline(self, student: Student) -> str:
         """Return a student's own deadline as a run records it; empty without one."""
         own_deadline = self.marks.counting.get((student.key, DEADLINE))
         if own_deadline is not None:
@@ -238,7 +238,7 @@ class Gradebook:
         opened = open_class_submission(
             root, stored.paths, stored.names, stored.student, settings.max_size
         )
-        return opened if digest_of(opened.digest) == stored.digest else None
+        return opened if hash_values(opened.digest) == stored.digest else None
 
     def _new_result(
         self, name: str, status: Status, words: str, carried: str, off: float | None = None
@@ -339,7 +339,7 @@ def grade_table(
     return header, (_table_row(book, one, is_exported) for one in grades)
 
 
-def points_of(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
+def list_points(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
     """Return the cells of a student that `mark --import` takes for marks.
 
     They are by criterion and for the grade.
@@ -351,7 +351,7 @@ def points_of(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
 
 
 def _table_row(book: Gradebook, grade: StudentGrade, is_exported: bool) -> list[CellValue]:
-    student, late, points = grade.student, grade.late, points_of(book, grade)
+    student, late, points = grade.student, grade.late, list_points(book, grade)
     numbers: list[CellValue] = [None] * 5
     digest = ""
     if grade.stored is not None:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from grader.base.text import named
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.marks.marks import Key, Mark
-from grader.classroom.results.results import StoredResult, digest_of
+from grader.classroom.results.results import StoredResult, hash_values
 from grader.classroom.roster.roster import Student, plain
 from grader.lab.rubric.criterion import GRADE, Criterion
 
@@ -86,7 +86,7 @@ class ReviewItem(NamedTuple):
         for member in self.members:
             mark = member.mark and member.mark._replace(place="")
             shown.append((member.student.key, member.stored.digest, mark))
-        return digest_of(self.criterion.id, shown, *(other.view for other in self.also))
+        return hash_values(self.criterion.id, shown, *(other.view for other in self.also))
 
     @property
     def all(self) -> "tuple[ReviewItem, ...]":
@@ -142,7 +142,7 @@ def review_items(
     mark or an excuse, unless `with_final`. Students of one submission have the same answers.
     Numbers and order of anonymous students reveal no names.
     """
-    keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys
+    keys = sorted(book.keys, key=hash_values) if is_anonymous else book.keys
     numbers = {key: number for number, key in enumerate(keys, 1)}
     counting, comments = book.marks.counting, book.marks.comments
     results = _readable_results(book)

@@ -23,7 +23,7 @@ from grader.files.tree import Tree
 from grader.lab.documents.evidence import EVIDENCE
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.labs import LabFolders
-from grader.lab.submission.opening import read_submission, submission_of
+from grader.lab.submission.opening import make_submission, read_submission
 from grader.lab.submission.submission import DEFAULTS, Opening, Submission
 from grader.ros.api import is_robot
 
@@ -39,7 +39,7 @@ _MAX_HASHED = (
 )  # bytes of a file that go into the digest; of a larger file its size does
 
 
-def listing_of(path: Path) -> ClassListing:
+def list_class(path: Path) -> ClassListing:
     """Return the listing of a class folder or zip; raises InputError if it is neither."""
     shown = printable_path(path)
     try:
@@ -88,7 +88,7 @@ class OpenedSubmission(NamedTuple):
                 lab=rubric.lab,
                 opening=opening,
             )
-        return submission_of(
+        return make_submission(
             with_inner(self.tree, LabFolders(rubric.folders).is_lab),
             self.name,
             rubric.lab,
@@ -137,12 +137,12 @@ def _open(root: str) -> ClassListing:
         return _listing(
             root, (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
         )
-    return listing_of(Path(root))
+    return list_class(Path(root))
 
 
 @lru_cache(maxsize=4)
 def _listing(root: str, _stamp: tuple[int, ...]) -> ClassListing:
-    return listing_of(Path(root))
+    return list_class(Path(root))
 
 
 def _open_single(source: ClassListing, path: str, max_size: int) -> OpenedSubmission:

@@ -142,7 +142,7 @@ def is_submission(name: str) -> bool:
     return name.lower().endswith(_ENDINGS)
 
 
-def readings_of(name: str, layout: str) -> list[NamedPath]:
+def read_name(name: str, layout: str) -> list[NamedPath]:
     """Return how a name can be read.
 
     In Canvas as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip.
@@ -174,7 +174,7 @@ def _read_path(match: re.Match[str]) -> NamedPath:
     )
 
 
-def entries_of(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
+def list_submissions(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
     """Yield the submissions by their names.
 
     `aliases` are the numbers of which one is the user's.
@@ -183,7 +183,7 @@ def entries_of(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
     if layout == "folders":
         yield from _folders(folder)
         return
-    readings = {name: readings_of(name, layout) for name in folder.names}
+    readings = {name: read_name(name, layout) for name in folder.names}
     folder.ignore(name for name, entries in readings.items() if not entries)
     certain = [entries[0].upload for entries in readings.values() if len(entries) == 1]
     first = min(filter(None, certain), default=0)
@@ -294,7 +294,7 @@ def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
     folder.list_refused()
     for student in students_by_name[lab]:
         path = f"{folder.start}{student}/{lab}"
-        time = _time_of(folder, path)
+        time = _read_time(folder, path)
         yield NamedPath(
             path.removeprefix(course.start),
             Student(student, login=student),
@@ -303,7 +303,7 @@ def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
         )
 
 
-def _time_of(folder: ClassFolder, path: str) -> str:
+def _read_time(folder: ClassFolder, path: str) -> str:
     """Return the time, in UTC, in the file beside an assignment; empty if there is none."""
     try:
         data = folder.listing.read(f"{path}/timestamp.txt", _MAX_TIME)
@@ -326,7 +326,7 @@ def teams(folder: ClassFolder) -> Iterator[NamedPath]:
             yield from students
         else:
             whole.append(team)
-    yield from entries_of(
+    yield from list_submissions(
         replace(folder, children=folder.children._replace(folders=whole)), "folders"
     )
 
@@ -343,7 +343,7 @@ def _student_paths(top: ClassFolder, team: str) -> Iterator[NamedPath]:
         folders = [name for name in below.children.folders if name in names]
         children = below.children._replace(folders=folders)
         inner = replace(below, children=children, people=People(()), lab="")
-        for entry in entries_of(inner, "folders"):
+        for entry in list_submissions(inner, "folders"):
             name, path = entry.student.login, f"{team}/{lab}/{entry.path}"
             student = Student(f"{team}/{name}", name, login=name, group=team)
             yield entry._replace(path=path, student=student)

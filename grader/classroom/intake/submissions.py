@@ -17,15 +17,15 @@ from typing import NamedTuple
 
 from grader.base.errors import InputError
 from grader.base.text import enumerated, first_lines, printable_path, shell_quoted
-from grader.classroom.intake.class_files import ClassListing, listing_of
+from grader.classroom.intake.class_files import ClassListing, list_class
 from grader.classroom.intake.layouts import (
     ClassFolder,
     NamedPath,
-    entries_of,
     is_submission,
+    list_submissions,
     names_in,
     nbgrader,
-    readings_of,
+    read_name,
     teams,
 )
 from grader.classroom.roster.roster import GROUP, People, Roster, Student, plain
@@ -92,7 +92,7 @@ def read_class(
         raise InputError(
             f"there is no layout {layout!r}; the layouts are: auto, {', '.join(_LAYOUTS)}"
         )
-    roots = list(zip(map(listing_of, paths), _names_of_roots(paths), strict=True))
+    roots = list(zip(map(list_class, paths), _names_of_roots(paths), strict=True))
     owners = _Owners(roster, roots)
     if not folders and rubric_id:
         folders = (rubric_id,)
@@ -125,7 +125,7 @@ def _choose_layout(folder: ClassFolder, path: Path, assignment: str) -> str:
     """Return the layout of a class folder; raise InputError for a single submission."""
     if assignment:
         return "nbgrader"
-    layout = _layout_of(folder)
+    layout = _prove_layout(folder)
     if layout == "teams" and "package.xml" in folder.children.files:
         what = (
             f"{printable_path(path)} is one submission and not a class: it contains a package.xml"
@@ -154,7 +154,7 @@ def _paths_in(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
         return teams(folder)
     if layout == "nbgrader":
         return nbgrader(folder)
-    return entries_of(folder, layout)
+    return list_submissions(folder, layout)
 
 
 def _without_ignored(
@@ -184,12 +184,12 @@ def _without_gradebook(folder: ClassFolder, path: Path, gradebook: Path | None) 
     return replace(folder, children=folder.children._replace(folders=others))
 
 
-def _layout_of(folder: ClassFolder) -> str:
+def _prove_layout(folder: ClassFolder) -> str:
     """Return the layout that the names prove, else `teams`, which may be plain folders."""
     for layout, share in (("moodle", 1), ("canvas", 3)):
         fitting = set()
         for name in folder.names:
-            if any(entry.is_written_by(layout) for entry in readings_of(name, layout)):
+            if any(entry.is_written_by(layout) for entry in read_name(name, layout)):
                 fitting.add(name)
         others = sum(name not in fitting for name in folder.entries)
         if fitting and len(fitting) >= share * others:
@@ -208,7 +208,7 @@ def _inner_class(folder: ClassFolder) -> ClassFolder:
     around, is_zip = [folder], isinstance(folder.listing, ClassZip)
     while len(around) <= MAX_WRAPPERS and (name := _only_folder(around[-1])):
         around.append(around[-1].inside(name))
-        if _layout_of(around[-1]) in (
+        if _prove_layout(around[-1]) in (
             ["canvas", "moodle", "nbgrader"] if is_zip else ["canvas", "moodle"]
         ):
             return around[-1]

@@ -25,8 +25,8 @@ from pathlib import PurePosixPath
 from grader.base.text import cut, first_lines, format_points
 from grader.classroom.roster.roster import Student
 from grader.classroom.tables import protected, spelt_out
-from grader.files.reading import sha256_of
-from grader.files.zip_writing import tar_gz_of, zip_of
+from grader.files.reading import hash_bytes
+from grader.files.zip_writing import make_tar_gz, make_zip
 from grader.lab.grading.report import Result
 from grader.report.criteria import is_manual
 
@@ -101,7 +101,7 @@ def is_own_comment(text: str) -> bool:
     rest = _MARK.sub("", text, count=1)
     return (
         mark is not None
-        and _words_of(rest).startswith(_OPENING)
+        and _split_words(rest).startswith(_OPENING)
         and mark[1] == _hash_of_words(rest)
     )
 
@@ -113,10 +113,10 @@ def _escape(text: str) -> str:
 
 
 def _hash_of_words(text: str) -> str:
-    return sha256_of(_words_of(text).encode("utf-8", "replace"))[:12]
+    return hash_bytes(_split_words(text).encode("utf-8", "replace"))[:12]
 
 
-def _words_of(text: str) -> str:
+def _split_words(text: str) -> str:
     return " ".join(html.unescape(_TAG.sub(" ", text)).split())
 
 
@@ -188,7 +188,7 @@ def write_feedback(
                 "the members of the group have different reports, and Canvas gives one to all of "
                 "them"
             )
-    return zip_of(files), without
+    return make_zip(files), without
 
 
 def _is_certain(file: str, users: Collection[str]) -> bool:
@@ -203,4 +203,4 @@ def _packed(name: str, report: str, data: bytes) -> bytes:
     """Return a report, in an archive if its name is that of one."""
     if not name.lower().endswith(_ARCHIVES):
         return data
-    return (zip_of if name.lower().endswith(".zip") else tar_gz_of)({report: data})
+    return (make_zip if name.lower().endswith(".zip") else make_tar_gz)({report: data})

@@ -26,10 +26,10 @@ from grader.classroom.marks.marks import (
     maxima,
     read_rows,
 )
-from grader.classroom.results.results import digest_of
+from grader.classroom.results.results import hash_values
 from grader.classroom.roster.typed_names import (
     as_number,
-    criterion_of,
+    find_criterion,
     find_typed,
     known,
     number_in,
@@ -97,7 +97,7 @@ class MarkImport(NamedTuple):
                         f"{student} has submitted nothing that could be marked: `{GRADE}` "
                         "is a final mark"
                     )
-                criterion_of(self.rubric, criterion)
+                find_criterion(self.rubric, criterion)
             digest = row["submission"] or (
                 "" if criterion == DEADLINE else self.digests.get(student, "")
             )
@@ -142,9 +142,9 @@ class MarkImport(NamedTuple):
         given = {name: row.get(name, text) for name, text in now.items()}
         for names, hashed in ((criteria, exported[1]), ([total], exported[2])):
             changed = [name for name in names if _plain(given[name]) != _plain(now[name])]
-            if not changed or _hash_of(given, names) == hashed:
+            if not changed or _hash_points(given, names) == hashed:
                 continue
-            if _hash_of(now, names) != hashed:
+            if _hash_points(now, names) != hashed:
                 raise InputError(
                     f"{student} has other points now than when they were exported: export "
                     "them again"
@@ -171,11 +171,11 @@ def exported_text(points: Mapping[str, str]) -> str:
     That of all criteria, and that of the grade.
     """
     *criteria, total = points
-    return _hash_of(points, criteria) + _hash_of(points, [total])
+    return _hash_points(points, criteria) + _hash_points(points, [total])
 
 
-def _hash_of(points: Mapping[str, str], names: Sequence[str]) -> str:
-    return digest_of(*(_plain(points[name]) for name in names))
+def _hash_points(points: Mapping[str, str], names: Sequence[str]) -> str:
+    return hash_values(*(_plain(points[name]) for name in names))
 
 
 def _plain(text: str) -> str:

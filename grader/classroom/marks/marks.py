@@ -38,7 +38,7 @@ from grader.classroom.marks.gradebook_folder import lock
 from grader.classroom.roster.lateness import read_time
 from grader.classroom.roster.typed_names import NotCountedError, known, number_in, read_points
 from grader.classroom.tables import SIZE_LIMIT, Table, TableRow, protected, read_table, unprotected
-from grader.files.reading import read_capped, sha256_of
+from grader.files.reading import hash_bytes, read_capped
 from grader.lab.rubric.criterion import DEADLINE, GRADE, TOTAL
 from grader.lab.rubric.keys import MAX_POINTS
 from grader.lab.rubric.rubric import Rubric
@@ -409,7 +409,7 @@ def mark_file(folder: Path, by: str) -> Path:
         except (OSError, KeyError, ImportError):  # by the version of Python and the system
             raise InputError("this login has no name: name yourself with --by NAME") from None
     if not _SAFE.fullmatch(name):
-        digest = sha256_of(name.encode("utf-8", "surrogateescape"))[:16]
+        digest = hash_bytes(name.encode("utf-8", "surrogateescape"))[:16]
         name = f"{re.sub('[^a-z0-9_]+', '-', name).strip('-')[:40] or '_'}-{digest}"
     return folder / f"{name}.csv"
 

@@ -42,7 +42,7 @@ def append_run(book: Gradebook) -> Results | None:
     None if there is no need, or no way.
     """
     now = book.run_with({one.student.key: book.run_grade(one) for one in book})
-    if book.results.unfinished or book.is_outdated or now.has_grades_of(book.run):
+    if book.results.unfinished or book.is_outdated or now.has_equal_grades(book.run):
         return None
     with ResultsWriter(book.folder / RESULTS, book.results.end) as writer:
         writer.append(now._replace(run=book.results.next_run, time=time_of_run(), written=()).line)

@@ -181,7 +181,7 @@ def _columns(rows: Sequence[_StudentRow], figures: ClassStatistics) -> list[tupl
     return [column for column in columns if column[0] in filled]
 
 
-def _filters_of(grade: StudentGrade, *, has_sections: bool) -> Iterator[tuple[int, str]]:
+def _list_filters(grade: StudentGrade, *, has_sections: bool) -> Iterator[tuple[int, str]]:
     """Yield the filters that show a student: the place of each among the others, and its label."""
     yield 0, grade.status
     if has_sections:
@@ -208,7 +208,7 @@ def _groups(
     has_sections = len({grade.student.section for grade in grades}) > 1
     for grade in grades:
         key = grade.student.key
-        for place in _filters_of(grade, has_sections=has_sections):
+        for place in _list_filters(grade, has_sections=has_sections):
             filtered[place].append(key)
         for _, name in grade.losses:
             lost[name].append(key)

@@ -26,9 +26,9 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.student_grade import Reason, StudentGrade
 from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.reports.kept_reports import KeptReports, WrittenReport
-from grader.classroom.results.results import StoredResult, digest_of
+from grader.classroom.results.results import StoredResult, hash_values
 from grader.classroom.run.preloading import PRELOAD
-from grader.files.reading import sha256_of
+from grader.files.reading import hash_bytes
 from grader.lab.checks.outcome import Outcome
 from grader.lab.grading.grade import grade as grade_submission
 from grader.lab.grading.report import Grade, Report, Result
@@ -90,7 +90,7 @@ class _ReportTask(NamedTuple):
     has_hints: bool = True
 
 
-def report_of(
+def make_report(
     book: Gradebook,
     grade: StudentGrade,
     *,
@@ -115,12 +115,12 @@ def report_of(
     has_marks = any(result.manual_mark for result in report.results)
     if has_marks or grade.has_final or grade.late.points:
         counting = Grade(grade.total, grade.late.points, grade.final_points is not None)
-    notes = (*report.notes, *notes_of(grade, report))
+    notes = (*report.notes, *list_notes(grade, report))
     student = grade.student.name or grade.student.key
     return report._replace(notes=notes, grade=counting, student=student)
 
 
-def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
+def list_notes(grade: StudentGrade, report: Report) -> Iterator[str]:
     """Yield the sentences about a whole submission.
 
     They are on the mark, the excuse or the comment of the whole, graders, and lateness.
@@ -166,7 +166,7 @@ def _graded_again(
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
     if kept is None or book.rubric.hints == "none" or not report.has_failures:
         return report
-    return kept.with_hints(report, submission, digest_of(stored.context, book.rubric.sha256))
+    return kept.with_hints(report, submission, hash_values(stored.context, book.rubric.sha256))
 
 
 def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
@@ -202,7 +202,7 @@ def _keep(
         for path in paths[key]:
             kept.written.pop(str(path), None)
             if one.is_final:
-                data = sha256_of(path.read_bytes())
+                data = hash_bytes(path.read_bytes())
                 kept.written[str(path)] = WrittenReport(shown[key], data, one.hints, one.still)
     return new_hints
 
@@ -223,7 +223,7 @@ def write_reports(
     run = run._replace(time=book.run.time)
     if Format.HTML in run.formats:
         run = run._replace(class_page=_path_of_class_page(run))
-    paths = {key: _paths_of(run, name) for key, name in files.items()}
+    paths = {key: _list_paths(run, name) for key, name in files.items()}
     context = _context(book, run)
     shown = {grade.student.key: _shown_in(book, grade, context) for grade in grades}
     changed = dict[str, str]()
@@ -240,8 +240,8 @@ def write_reports(
             if key not in lost:
                 pages[key] = name
                 first_paths[key] = str(paths[key][0])
-        stills = _stills_of(done, kept, first_paths)
-        _write_class_page_of(book, run, pages, stills)
+        stills = _collect_stills(done, kept, first_paths)
+        _place_class_page(book, run, pages, stills)
     _tell_written(book, run, len(files) - len(lost), lost, terminal)
 
 
@@ -265,7 +265,7 @@ def _find_outdated(
     return outdated
 
 
-def _stills_of(
+def _collect_stills(
     done: Mapping[str, _Done], kept: KeptReports, paths: Mapping[str, str]
 ) -> "dict[str, Still]":
     """Return the small pictures of students' robots, of new and of older reports."""
@@ -275,7 +275,7 @@ def _stills_of(
     return stills
 
 
-def _write_class_page_of(
+def _place_class_page(
     book: Gradebook, run: ReportRun, files: Mapping[str, str], stills: Mapping[str, "Still"]
 ) -> None:
     """Write the class's page beside the reports, or in the gradebook above its own folder."""
@@ -296,7 +296,7 @@ def _tell_written(
         terminal.warn(printable(f"no report for {who}: {why}"))
 
 
-def _paths_of(run: ReportRun, name: str) -> list[Path]:
+def _list_paths(run: ReportRun, name: str) -> list[Path]:
     """Return the paths of the files of a student's report."""
     return [run.folder.resolve() / f"{name}.{kind.ending}" for kind in run.formats]
 
@@ -305,8 +305,8 @@ def _context(book: Gradebook, run: ReportRun) -> str:
     """Return the hash of all that reports depend on besides the students and their submissions."""
     answers = run.answers.read_bytes() if run.answers is not None else b""
     files = sorted(path for path in (book.folder / names.RUBRIC).rglob("*") if path.is_file())
-    rubric = [(str(path), sha256_of(path.read_bytes())) for path in files]
-    return digest_of(__version__, run.class_page, answers, rubric)
+    rubric = [(str(path), hash_bytes(path.read_bytes())) for path in files]
+    return hash_values(__version__, run.class_page, answers, rubric)
 
 
 def _shown_in(book: Gradebook, grade: StudentGrade, context: str) -> str:
@@ -320,7 +320,7 @@ def _shown_in(book: Gradebook, grade: StudentGrade, context: str) -> str:
         is_there = book.is_unchanged(stored)
         stored = stored._replace(run=0)
     facts = grade.student, stored, is_there, grade.late, grade.final, by_people
-    return digest_of(context, *facts)
+    return hash_values(context, *facts)
 
 
 def render_reports(run: ReportRun, files: Mapping[str, str], terminal: Terminal) -> dict[str, str]:
@@ -377,26 +377,26 @@ def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[_Done]:
     done = list[_Done]()
     for task in tasks:
         kept.used, kept.is_lost = "", not task.has_hints
-        report = report_of(book, book.grade(task.key), has_hints=task.has_hints, kept=kept)
+        report = make_report(book, book.grade(task.key), has_hints=task.has_hints, kept=kept)
         report = report._replace(class_page=run.class_page)
         for kind in run.formats:
             save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind))
         # Also those of an earlier task, which may have failed to write its report.
         new = {kept.used: kept.new[kept.used]} if kept.used in kept.new else {}
-        still = _still_of(report) if Format.HTML in run.formats else ()
+        still = _draw_report(report) if Format.HTML in run.formats else ()
         done.append(_Done(task.key, "", kept.used, new, not kept.is_lost, still))
     return done
 
 
-def _still_of(report: Report) -> "Still":
+def _draw_report(report: Report) -> "Still":
     """Return the small picture of the robot of a report."""
     from grader.report.drawing.graded_picture import (
-        picture_of,  # late: only the class's page needs numpy
+        draw_report,  # late: only the class's page needs numpy
     )
-    from grader.report.drawing.still import still_of
+    from grader.report.drawing.still import draw_still
 
-    picture = picture_of(report)
-    return still_of(picture.scene) if picture is not None else ()
+    picture = draw_report(report)
+    return draw_still(picture.scene) if picture is not None else ()
 
 
 @lru_cache(maxsize=1)
@@ -423,7 +423,7 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
 
 def _with_digest(key: str) -> str:
     readable = re.sub(r"[^\w-]+", "_", unicodedata.normalize("NFC", key))[:30].strip(" .-") or "_"
-    return f"{readable}-{sha256_of(key.encode('utf-8', 'surrogateescape'))}"
+    return f"{readable}-{hash_bytes(key.encode('utf-8', 'surrogateescape'))}"
 
 
 def write_class_page(

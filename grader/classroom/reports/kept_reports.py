@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from grader.base.errors import InputError, OutOfTime
 from grader.base.source import Edit, Location
-from grader.classroom.results.results import digest_of, is_whole, json_line, values_in
+from grader.classroom.results.results import hash_values, is_whole, json_line, values_in
 from grader.files.limits import MAX_FILE_SIZE
-from grader.files.reading import sha256_of
+from grader.files.reading import hash_bytes
 from grader.lab.grading.report import Hint, Report
 from grader.lab.hints.hinting import hinted
 from grader.lab.submission.edited import content
@@ -75,7 +75,7 @@ class KeptReports:
             submission: What was graded.
             context: The hash of all that hints depend on besides the submission.
         """
-        self.used = key = digest_of(context, _digest_of_content(submission))
+        self.used = key = hash_values(context, _digest_of_content(submission))
         values = self._hints.get(key) or self.new.get(key)
         if values is not None:
             return _restored(report, values)
@@ -87,7 +87,7 @@ class KeptReports:
         if hinted_report.faults:
             self.is_lost = True
         else:
-            self.new[key] = _values_of(hinted_report.report, key)
+            self.new[key] = _list_hints(hinted_report.report, key)
         return hinted_report.report
 
     def is_current(self, path: Path, shows: str) -> bool:
@@ -95,7 +95,7 @@ class KeptReports:
         entry = self.written.get(str(path))
         if entry is None or entry.shows != shows or not path.is_file():
             return False
-        return sha256_of(path.read_bytes()) == entry.sha256
+        return hash_bytes(path.read_bytes()) == entry.sha256
 
     def save(self, new: Mapping[str, Mapping[str, Any]], roots: Collection[Path]) -> None:
         """Write what the files that are there show, and the hints on them."""
@@ -112,15 +112,15 @@ class KeptReports:
 def _digest_of_content(submission: Submission) -> str:
     """Return the hash of all files of a submission; a URDF on its own has no path."""
     if submission.is_single:
-        return sha256_of(content(submission, submission.path or "") or b"")
+        return hash_bytes(content(submission, submission.path or "") or b"")
     tree = submission.whole_tree
     facts: list[Any] = [submission.path, submission.opening.no_documents, sorted(tree.folders)]
     for path, file in tree.files.items():
-        facts += [path, sha256_of(file.read(MAX_FILE_SIZE, first=True))]
-    return digest_of(*facts)
+        facts += [path, hash_bytes(file.read(MAX_FILE_SIZE, first=True))]
+    return hash_values(*facts)
 
 
-def _values_of(report: Report, key: str) -> Mapping[str, Any]:
+def _list_hints(report: Report, key: str) -> Mapping[str, Any]:
     """Return the hints of a report as plain values."""
     own_path = report.submission.path
     hints = dict[str, Any]()
@@ -143,12 +143,12 @@ def _without_path(place: Location | Edit, own_path: str | None) -> list[Any]:
 def _restored(report: Report, values: Mapping[str, Any]) -> Report:
     """Return a report with hints that were kept."""
     own_path = report.submission.path or ""
-    hints = {name: _hint_of(kept, own_path) for name, kept in values["found"].items()}
+    hints = {name: _read_hint(kept, own_path) for name, kept in values["found"].items()}
     results = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     return report._replace(results=tuple(results), hints_complete=values["is_complete"])
 
 
-def _hint_of(values: Mapping[str, Any], own_path: str) -> Hint:
+def _read_hint(values: Mapping[str, Any], own_path: str) -> Hint:
     """Return a hint of plain values, for a submission whose URDF has this path."""
     path, line, column, calls, *_ = _with_path(values["at"], own_path)
     at = Location(path, line, column, tuple(calls))

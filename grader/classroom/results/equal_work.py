@@ -6,7 +6,7 @@ from itertools import starmap
 from typing import NamedTuple
 
 from grader.classroom.results.results import StoredResult
-from grader.files.reading import sha256_of
+from grader.files.reading import hash_bytes
 from grader.lab.checks.registry import GRAPH_CHECKS
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.submission import Submission
@@ -30,7 +30,7 @@ class EqualWork(NamedTuple):
     equal: str
 
 
-def forms_of(
+def hash_forms(
     submission: Submission, rubric: Rubric, *, is_handed_out: bool = False
 ) -> dict[str, str]:
     """Return the hashes of the forms of a robot and a graph, without what is empty.
@@ -42,7 +42,7 @@ def forms_of(
     urdf, forms = submission.urdf, dict[str, str]()
     if isinstance(urdf, Read):
         if urdf.data.strip():
-            forms |= {"urdf": sha256_of(urdf.data), "robot": robot_hash(urdf.reading)}
+            forms |= {"urdf": hash_bytes(urdf.data), "robot": robot_hash(urdf.reading)}
         forms["written"] = written_form(urdf.reading.elements, is_handed_out=is_handed_out)
     if any(criterion.check.name in GRAPH_CHECKS for criterion in rubric.criteria):
         from grader.workspace.api import (  # late: few labs ask
@@ -57,9 +57,9 @@ def forms_of(
     return {name: form[:_DIGITS] for name, form in forms.items() if form}
 
 
-def hashes_of(submission: Submission, rubric: Rubric) -> tuple[str, ...]:
+def hash_handed_out(submission: Submission, rubric: Rubric) -> tuple[str, ...]:
     """Return the hashes of work that is no equal work, as the course handed it out."""
-    return tuple(forms_of(submission, rubric, is_handed_out=True).values())
+    return tuple(hash_forms(submission, rubric, is_handed_out=True).values())
 
 
 def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> list[EqualWork]:

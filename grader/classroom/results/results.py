@@ -22,7 +22,7 @@ from zlib import crc32
 
 from grader.base.errors import InputError
 from grader.base.text import MAX_NAMED, enumerated, printable_path
-from grader.files.reading import read_error, sha256_of
+from grader.files.reading import hash_bytes, read_error
 from grader.lab.checks.outcome import Status
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
@@ -121,7 +121,7 @@ class Run(NamedTuple):
         total = self.totals.get(student, self.others.get(student))
         return RunGrade(total, **self.details.get(student, {}))
 
-    def has_grades_of(self, other: "Run") -> bool:
+    def has_equal_grades(self, other: "Run") -> bool:
         """Return whether another run has the same grades, computed by the same rubric and rules."""
         return self._replace(run=other.run, time=other.time, written=other.written) == other
 
@@ -150,12 +150,12 @@ def values_in(line: bytes) -> dict[str, Any]:
     }
 
 
-def digest_of(*parts: object) -> str:
+def hash_values(*parts: object) -> str:
     """Return the hash of some values.
 
     It begins with a letter, so that no spreadsheet takes it for a number.
     """
-    return f"d{sha256_of(repr(parts).encode())[:_DIGITS]}"
+    return f"d{hash_bytes(repr(parts).encode())[:_DIGITS]}"
 
 
 def time_of_run() -> str:
@@ -213,7 +213,7 @@ class Results:
             self._places.pop(key, None)
         self.unfinished.clear()
         self._is_torn = False
-        if run.written or not self.runs or not run.has_grades_of(self.runs[-1]):
+        if run.written or not self.runs or not run.has_equal_grades(self.runs[-1]):
             self.turns.append(run.run)
         # Only the newest are compared.
         self.runs[-1:] = [
@@ -289,13 +289,13 @@ class Results:
 
     def texts(self, stored: StoredResult) -> dict[str, str]:
         """Return the texts of the Word and PDF files in a submission as it was graded, by path."""
-        return self._texts_of(stored, "files")
+        return self._read_texts(stored, "files")
 
     def written_answers(self, stored: StoredResult) -> dict[str, str]:
         """Return the written answers in a submission as it was graded, by criterion."""
-        return self._texts_of(stored, "answers")
+        return self._read_texts(stored, "answers")
 
-    def _texts_of(self, stored: StoredResult, kind: str) -> dict[str, str]:
+    def _read_texts(self, stored: StoredResult, kind: str) -> dict[str, str]:
         [values] = self._read_values(self._texts, [stored.student])
         if values and values["digest"] == stored.digest:
             return dict(values[kind])

@@ -16,20 +16,20 @@ from grader.base.text import capitalised, shell_quoted
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.review_items import ReviewItem
 from grader.classroom.review.review_pages import OpenedItem
-from grader.lab.checks.outcome import location_of
+from grader.lab.checks.outcome import compute_location
 from grader.lab.documents.pictures import EmbeddedPicture, NotShown
 from grader.lab.grading.criterion_pictures import (
     evidence_files,
+    find_pictures,
     loose_lines,
     may_have_pictures,
-    pictures_of,
 )
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.submission.submission import Submission
 from grader.report.criteria import answer_lines, counts_lines, is_manual
-from grader.report.drawing.graded_picture import picture_of
+from grader.report.drawing.graded_picture import draw_report
 from grader.report.drawing.picture import Picture
 from grader.report.drawing.space import space_data, without_names
 from grader.report.drawing.three_views import callout_lines, drawing_element
@@ -75,7 +75,7 @@ def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
     opened = OpenedItem(
         capitalised(outcome.message),
         answer_lines(outcome),
-        pictures_of(result, submission) if may_have_pictures(result) else (),
+        find_pictures(result, submission) if may_have_pictures(result) else (),
         [*_paths(book, item, result)],
     )
     documents = loose_lines(result, submission, is_anonymous=bool(first.number))
@@ -130,7 +130,7 @@ def _with_robot(
 
     And the files around the places that decide its criteria.
     """
-    picture, views, legend = picture_of(report), "", list[str]()
+    picture, views, legend = draw_report(report), "", list[str]()
     space = None
     if picture is not None:
         legend = callout_lines(picture)
@@ -179,7 +179,7 @@ def _deciding_place(report: Report, result: Result) -> Location | None:
         examined = robot.link(link)
     else:
         examined = robot.links[0]
-    return location_of(examined.known.location)
+    return compute_location(examined.known.location)
 
 
 def _unknown_place(report: Report, criterion: Criterion) -> Location | None:

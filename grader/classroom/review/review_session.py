@@ -39,9 +39,9 @@ from grader.classroom.marks.gradebook_folder import CLASS_FILE
 from grader.classroom.marks.marks import Key, Mark, append_marks, mark_file, mark_in
 from grader.classroom.review.opened_item import open_item
 from grader.classroom.review.review_pages import NO_ANSWER, SimilarItem
-from grader.classroom.review.similar_answers import share_of_words, words_of
+from grader.classroom.review.similar_answers import share_of_words, split_words
 from grader.classroom.roster.roster import plain
-from grader.classroom.roster.typed_names import criterion_of
+from grader.classroom.roster.typed_names import find_criterion
 from grader.classroom.tables import write_table
 from grader.lab.rubric.model_answers import load_with_answers
 from grader.report.criteria import alike
@@ -226,7 +226,7 @@ class ReviewSession:
         """Show the items that a filter lets through. Raises InputError."""
         sections = self.sections
         if wanted.criterion:
-            criterion_of(self.book.rubric, wanted.criterion)
+            find_criterion(self.book.rubric, wanted.criterion)
         if wanted.section and plain(wanted.section) not in sections:
             known = enumerated([*map(repr, sorted(sections.values()))], MAX_NAMED) or "none"
             raise InputError(
@@ -242,13 +242,13 @@ class ReviewSession:
         The most similar come first.
         """
         item, similar_items = self.item_at(at), list[SimilarItem]()
-        own_words = words_of(self._written(item))
+        own_words = split_words(self._written(item))
         for position, other in self.shown.items():
             is_same = other.criterion.id == item.criterion.id and position != at
             is_alone = not (item.also or self._joined[position].also)
             if is_same and is_alone and other.members[0].state == UNMARKED:
                 text = self._written(other)
-                share = share_of_words(own_words, words_of(text))
+                share = share_of_words(own_words, split_words(text))
                 if share:
                     similar_items.append(SimilarItem(position, other, text, share))
         return sorted(similar_items, key=lambda one: -one.share)
@@ -285,7 +285,7 @@ class ReviewSession:
             raise InputError("points are missing")
         new, replaced = dict[Key, Mark](), list[Mark]()
         for one, value in zip([*item.all, *items], values + values * len(similar), strict=True):
-            new |= self._marks_of(one, value, comment)
+            new |= self._make_marks(one, value, comment)
             for member in one.members:
                 if member.mark is not None and member.mark.points is not None:
                     replaced.append(member.mark)
@@ -314,7 +314,7 @@ class ReviewSession:
                 return None
         return items
 
-    def _marks_of(self, item: ReviewItem, points: str, comment: str) -> dict[Key, Mark]:
+    def _make_marks(self, item: ReviewItem, points: str, comment: str) -> dict[Key, Mark]:
         """Return the new mark of each student of an item. Raises InputError."""
         cells = {"time": "", "by": self.by, "points": points, "comment": comment, "": ""}
         marks = dict[Key, Mark]()

@@ -9,7 +9,7 @@ _MAX_WORDS = 300  # of an answer that are compared
 _MIN_WORDS = 6  # in a shorter answer, one word makes the difference
 
 
-def words_of(text: str) -> list[str]:
+def split_words(text: str) -> list[str]:
     """Return the words of an answer, without differences of case, spaces and punctuation."""
     return re.findall(r"\w+", text.casefold())[:_MAX_WORDS]
 

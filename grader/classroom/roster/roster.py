@@ -173,7 +173,7 @@ def read_roster(data: bytes, shown: str) -> Roster:
 
 def _is_lateness_unclear(student: Student, row: Mapping[str, str]) -> bool:
     """Return whether a student is late, and neither column of the row says by how many days."""
-    has_days = bool(row["late"]) or _days_of(row["status"]) is not None
+    has_days = bool(row["late"]) or _read_days(row["status"]) is not None
     return bool(student.is_late) and student.days_late is None and not has_days
 
 
@@ -276,7 +276,7 @@ def _lateness(
     row: Mapping[str, str], extension_days: float
 ) -> tuple[bool | None, float | None, str]:
     """Return whether a submission is late, by how many days, and the LMS that measured them."""
-    status = _days_of(row["status"])
+    status = _read_days(row["status"])
     if row["moodle"] and not (row["late"] or row["submitted"]) and status != 0:
         if status is None:
             return True, None, ""
@@ -295,7 +295,7 @@ def _days(text: str) -> float | None:
     return None
 
 
-def _days_of(status: str) -> float | None:
+def _read_days(status: str) -> float | None:
     """Return by how many days Moodle's Status says that a submission was late.
 
     None if that is not clear.

@@ -141,7 +141,7 @@ def read_points(text: str, name: str, most: Decimal) -> Decimal:
     return abs(points)  # -0 is 0
 
 
-def criterion_of(rubric: Rubric, name: str) -> Criterion:
+def find_criterion(rubric: Rubric, name: str) -> Criterion:
     """Return the criterion with this id; raises InputError."""
     criteria = {criterion.id: criterion for criterion in rubric.criteria}
     if name not in criteria:

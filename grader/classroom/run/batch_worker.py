@@ -14,12 +14,12 @@ from grader.base.errors import InputError, MachineError, OutOfTime
 from grader.base.processor_time import limit_processor_time
 from grader.base.text import MAX_NAMED, cut, enumerated
 from grader.classroom.intake.class_files import digest_of_unread, open_class_submission
-from grader.classroom.results.equal_work import forms_of, hashes_of
-from grader.classroom.results.results import StoredCriterion, StoredResult, Verdict, digest_of
+from grader.classroom.results.equal_work import hash_forms, hash_handed_out
+from grader.classroom.results.results import StoredCriterion, StoredResult, Verdict, hash_values
 from grader.files.limits import ARCHIVES
 from grader.files.reading import URDF_LIMIT
 from grader.lab.checks.outcome import Status, how_far_off
-from grader.lab.grading.criterion_pictures import content_of, is_empty
+from grader.lab.grading.criterion_pictures import find_content, is_empty
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.rubric import Rubric, read_rubric
@@ -87,7 +87,7 @@ def _grade_within_limits(context: ClassContext, task: Task) -> StoredResult:
         opened = open_class_submission(
             context.roots[task.root], task.paths, task.names, task.key, context.max_size
         )
-        digest = digest_of(opened.digest)
+        digest = hash_values(opened.digest)
     return given_up(context, task, lost, digest)
 
 
@@ -96,7 +96,7 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
     result = StoredResult(task.key, 0, "unchanged", no_documents=task.no_documents)
     try:
         opened = open_class_submission(root, task.paths, task.names, task.key, context.max_size)
-        result = result._replace(digest=digest_of(opened.digest))
+        result = result._replace(digest=hash_values(opened.digest))
         if result.digest == task.graded:
             return result
         if task.no_documents and not opened.has_documents:  # nothing would be different this time
@@ -108,7 +108,7 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
         report = grade(rubric, submission, context.parts, is_one_of_class=True, is_explained=False)
     except InputError as error:
         result = result._replace(
-            digest=result.digest or digest_of(str(error), digest_of_unread(root, task.paths))
+            digest=result.digest or hash_values(str(error), digest_of_unread(root, task.paths))
         )
         if result.digest != task.graded:
             result = _undecided(context, result._replace(verdict="unreadable", reason=str(error)))
@@ -123,7 +123,7 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
             reason = f"the grader itself failed: {type(error).__name__}: {error}"
         return _undecided(context, result._replace(verdict="errored", reason=reason))
     entries = {one.criterion.id: _stored_criterion(one) for one in report.results}
-    answers, written = _answers_of(report, result.digest)
+    answers, written = _key_answers(report, result.digest)
     result = result._replace(parts=report.parts, results=entries, answers=answers, written=written)
     if fault := report.fault:
         return result._replace(verdict="errored", reason=fault)
@@ -134,7 +134,7 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
     verdict: Verdict = "unreadable" if unread else "graded"
     texts = submission.documents.converted
     result = result._replace(verdict=verdict, reason=unread or submission.several, texts=texts)
-    return result if is_handed_out else result._replace(work=forms_of(submission, rubric))
+    return result if is_handed_out else result._replace(work=hash_forms(submission, rubric))
 
 
 def _stored_criterion(result: Result) -> StoredCriterion:
@@ -151,7 +151,7 @@ def _stored_criterion(result: Result) -> StoredCriterion:
     return (*stored, off)
 
 
-def _answers_of(report: Report, digest: str) -> tuple[dict[str, str], dict[str, str]]:
+def _key_answers(report: Report, digest: str) -> tuple[dict[str, str], dict[str, str]]:
     """Return the key of the answer for each criterion that needs manual grading.
 
     It is empty if there is nothing to read. The answers that are words come with the keys.
@@ -162,12 +162,12 @@ def _answers_of(report: Report, digest: str) -> tuple[dict[str, str], dict[str, 
     for one in report.results:
         if one.outcome.status != "pending":
             continue
-        content = content_of(one, report)
+        content = find_content(one, report)
         if content:
             written[one.criterion.id] = content[:_MAX_ANSWER]
         if not content and not is_empty(one, report):
             content = digest
-        automatic[one.criterion.id] = digest_of(content) if content else ""
+        automatic[one.criterion.id] = hash_values(content) if content else ""
     return automatic, written
 
 
@@ -185,7 +185,7 @@ def given_up(context: ClassContext, task: Task, error: WorkerError, digest: str)
 def unopened_digest(root: str, paths: tuple[str, ...]) -> str:
     """Return the digest of files that are too slow to open; empty for folders."""
     unread = digest_of_unread(root, paths)
-    return digest_of(unread) if unread else ""
+    return hash_values(unread) if unread else ""
 
 
 def _undecided(context: ClassContext, result: StoredResult) -> StoredResult:
@@ -207,7 +207,7 @@ def reference_hashes(data: bytes, path: str) -> tuple[str, ...]:
         _ = rubric.solution.robot  # raises InputError
     with suppress(InputError):
         if rubric.solution is not None:
-            return hashes_of(rubric.solution.submission, rubric)
+            return hash_handed_out(rubric.solution.submission, rubric)
     return ()
 
 

@@ -376,11 +376,11 @@ def _points(
     is_of_one_kind = choice.has_equal_weights or not of_package
     if is_of_one_kind and choice.total is None:
         return [*map(Decimal, weights)]
-    kinds = [_ROBOT if is_of_one_kind else _kind_of(row) for row in rows]
+    kinds = [_ROBOT if is_of_one_kind else _choose_share(row) for row in rows]
     return _shared(kinds, weights, choice.total)
 
 
-def _kind_of(row: _DraftCriterion) -> str:
+def _choose_share(row: _DraftCriterion) -> str:
     """Return the kind of thing that a criterion is about, which has its share of the points."""
     if row.fact.check == "names_agree":
         return _NODES if row.fact.arguments["of"] in _OF_NODES else _NAMES

@@ -90,7 +90,7 @@ class DraftChoice(NamedTuple):
             return None
         selectors: dict[str, str] = {}
         for link in self._free_links(fact, robot):
-            selector = _selector_of(robot, link) if robot is not None else None
+            selector = _select_link(robot, link) if robot is not None else None
             if selector is None:
                 return Omission(fact.words, f"no place in the tree names the free link {link}")
             selectors[link] = selector
@@ -154,7 +154,7 @@ class DraftChoice(NamedTuple):
         return value in self.free or value.rpartition("/")[2] in self.free
 
 
-def _selector_of(robot: Configuration, link: str) -> str | None:
+def _select_link(robot: Configuration, link: str) -> str | None:
     """Return the place in the tree that names a link; None if there is none."""
     for selector in ("@root", "@tip", *(f"@moved:{at}" for at in range(1, _MAX_MOVED + 1))):
         try:

@@ -10,14 +10,14 @@ from grader.base.text import enumerated
 from grader.lab.authoring.facts import CarriedFact, Fact, Facts, Omission, Solution, are_joints_free
 from grader.ros.installation.places import is_of_one_machine
 from grader.ros.package.robot_file import Read, read_as_ros
-from grader.ros.package.trees import is_path, steps_of
+from grader.ros.package.trees import is_path, split_path
 from grader.ros.python.budget import Budget
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.ros.xml.elements import (
-    attributes_of,
     foreign_elements,
-    name_of,
+    list_attributes,
+    read_name,
     readable,
     text_in,
     xml_text,
@@ -284,7 +284,7 @@ def _entry(at: str, values: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def _title(fact: Fact) -> str:
     """Return what a criterion asks of an element, in a sentence that names its joint or link."""
-    steps = steps_of(fact.arguments["at"], is_xml=True)
+    steps = split_path(fact.arguments["at"], is_xml=True)
     values = dict(fact.arguments.get("values", {}))
     outer = f"<{steps[0].name}>"
     subjects = [value for key, value in steps[0].conditions if key in _SUBJECTS]
@@ -332,7 +332,7 @@ def _entries(root: Element, covered: Collection[str]) -> Facts:
     The interfaces that are `covered` are not among them.
     """
     for element in foreign_elements(root):
-        about = f"<{name_of(element)}>"
+        about = f"<{read_name(element)}>"
         if sum(1 + len(inner.attrib) for inner in element.iter()) > _MAX_VALUES:
             yield Omission(
                 _label(element), f"it has more than {_MAX_VALUES} elements and attributes"
@@ -340,9 +340,9 @@ def _entries(root: Element, covered: Collection[str]) -> Facts:
             continue
         conditions = _conditions(element)
         for label, path, values in _element_values(element):
-            at = f"{name_of(element)}{conditions}{f'/{path}' if path else ''}"
-            _drop_free(values, name_of(element))
-            if (name_of(element), path) == ("ros2_control", "joint"):
+            at = f"{read_name(element)}{conditions}{f'/{path}' if path else ''}"
+            _drop_free(values, read_name(element))
+            if (read_name(element), path) == ("ros2_control", "joint"):
                 _drop_covered(values, covered)
             if is_path(at):
                 yield Fact(about, "entry_is", _entry(at, values), label)
@@ -355,8 +355,8 @@ def _conditions(element: Element) -> str:
 
     The names of <ros2_control> and <transmission> are free: a transmission is that of its joint.
     """
-    tag = name_of(element)
-    given = [(key, value) for key, value in attributes_of(element)]
+    tag = read_name(element)
+    given = [(key, value) for key, value in list_attributes(element)]
     if tag in _NAMED_FREELY:
         given = [(key, value) for key, value in given if key != "name"]
     texts = [f"[@{key}='{value}']" for key, value in given]
@@ -397,11 +397,11 @@ def _element_values(element: Element) -> Iterator[tuple[str, str, _Values]]:
         if _children(child) or child.attrib:
             deep.append(child)
         else:
-            _add(plain, name_of(child), _value(text_in(child)))
+            _add(plain, read_name(child), _value(text_in(child)))
     if plain or not deep:
         yield _label(element), "", plain
     for child in deep:
-        yield f"{_label(element)} {_label(child)}", name_of(child), _values_by_path(child)
+        yield f"{_label(element)} {_label(child)}", read_name(child), _values_by_path(child)
 
 
 def _values_by_path(element: Element, path: str = "") -> _Values:
@@ -410,7 +410,7 @@ def _values_by_path(element: Element, path: str = "") -> _Values:
     for key, text in element.attrib.items():
         _add(values_by_path, f"{path}@{key!s}", _value(str(text)))
     for child in _children(element):
-        inner = f"{path}{name_of(child)}"
+        inner = f"{path}{read_name(child)}"
         if not _children(child) and (text_in(child) or not child.attrib):
             _add(values_by_path, inner, _value(text_in(child)))
         for key, value in _values_by_path(child, f"{inner}/").items():
@@ -454,6 +454,6 @@ def _children(element: Element) -> list[Element]:
 
 def _label(element: Element) -> str:
     """Return the tag and the name of an element, if that is not free."""
-    tag = name_of(element)
+    tag = read_name(element)
     keys = () if tag in _NAMED_FREELY else _NAMED_BY
     return f"{tag} {next((str(element.get(key)) for key in keys if element.get(key)), '')}"

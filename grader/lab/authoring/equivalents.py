@@ -21,9 +21,9 @@ from grader.lab.authoring.trees import (
     move_frame,
     own_elements,
     parent_joint,
+    read_vector,
     split_joint,
-    text_of,
-    vector_of,
+    write_tree,
 )
 from grader.lab.checks.check import EQUIVALENTS
 from grader.ros.package.robot_file import Read, Urdf
@@ -70,11 +70,11 @@ def equivalents(root: Element, rules: RewritingRules) -> Iterator[Equivalent]:
     Each changes all that the rules and the family allow.
     """
     rules = rules._replace(named={*rules.named, *words_of_foreign(root)})
-    before = text_of(copied(root))
+    before = write_tree(copied(root))
     for family, rewriting in _REWRITINGS.items():
         tree = copied(root)
         if rewriting(tree, rules):
-            text = text_of(tree, "\t" if family == _LAYOUT else "  ")
+            text = write_tree(tree, "\t" if family == _LAYOUT else "  ")
             yield Equivalent(family, text, before, family in _AS_XACRO)
 
 
@@ -132,7 +132,7 @@ def _free_move(tree: Element, joint: Element, rules: RewritingRules) -> Transfor
         return None
     if kind in ("fixed", "prismatic"):
         return _MOVED
-    axis = unit(vector_of(joint.find("axis"), "xyz", "1 0 0"))
+    axis = unit(read_vector(joint.find("axis"), "xyz", "1 0 0"))
     if kind not in ("revolute", "continuous") or axis is None:
         return None
     x, y, z = axis
@@ -191,7 +191,7 @@ def _turn_mimic_joints(tree: Element, rules: RewritingRules) -> bool:
             continue
         if axis is None:
             axis = etree.SubElement(joint, "axis")
-        axis.set("xyz", attribute_text(-value for value in vector_of(axis, "xyz", "1 0 0")))
+        axis.set("xyz", attribute_text(-value for value in read_vector(axis, "xyz", "1 0 0")))
         for key, default in (("multiplier", "1"), ("offset", "0")):
             mimic.set(key, attribute_text([-float(mimic.get(key, default))]))
         for limit in joint.iterchildren("limit"):
@@ -203,7 +203,7 @@ def _turn_mimic_joints(tree: Element, rules: RewritingRules) -> bool:
 
 
 def _change_layout(tree: Element, _: RewritingRules) -> bool:
-    """Reverse the order of attributes, and add comments; `text_of` changes the white space."""
+    """Reverse the order of attributes, and add comments; `write_tree` changes the white space."""
     for index, element in enumerate([*own_elements(tree, "*")]):
         attributes = [*reversed(element.attrib.items())]
         element.attrib.clear()

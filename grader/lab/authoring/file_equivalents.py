@@ -37,7 +37,11 @@ def _for_every_node(workspace: Workspace, path: str, tree: YamlNode) -> str | No
         [keys for keys, _ in sections_in(tree)],
         workspace.parameters.files.get(path, []),
     )
-    if len(nodes) != 1 or len(tree.value) != 1 or sections != [(workspace.code.name_of(nodes[0]),)]:
+    if (
+        len(nodes) != 1
+        or len(tree.value) != 1
+        or sections != [(workspace.code.find_name(nodes[0]),)]
+    ):
         return None
     before = tree.source.text
     text = re.sub(rf"(?m)^([\"']?){re.escape(sections[0][0])}\1(?=\s*:)", "/**", before, count=1)

@@ -63,7 +63,7 @@ class LaunchConnections:
         replaced = set()
         for node in launch.nodes:
             sent = [transform.is_certain for transform in by_program.get(node.executable, [])]
-            is_own = self._workspace.package_of(node) is not None
+            is_own = self._workspace.find_package(node) is not None
             # Of another program, what else it may publish is not known.
             is_known = all(sent) if is_own else any(sent)
             is_asked = bool(sent) and is_known and self._graph.is_for_transforms(node)

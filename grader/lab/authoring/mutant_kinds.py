@@ -49,10 +49,10 @@ class KindScore(NamedTuple):
     graded: int
 
 
-def kind_of(family: str) -> str:
+def find_kind(family: str) -> str:
     """Return the kind of a family of mutants.
 
-    >>> kind_of("number x10")
+    >>> find_kind("number x10")
     'numbers'
     """
     for kind, starts in _KINDS.items():
@@ -88,7 +88,7 @@ def scores_by_kind(outcomes: Iterable[tuple[str, str]]) -> list[KindScore]:
     caught, counts = Counter[str](), Counter[str]()
     for family, fate in outcomes:
         if fate in ("caught", "survived"):
-            kind = kind_of(family)
+            kind = find_kind(family)
             counts[kind] += 1
             caught[kind] += fate == "caught"
     order = [*_KINDS, _OTHER]

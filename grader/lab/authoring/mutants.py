@@ -19,7 +19,7 @@ from grader.base.source import Source
 from grader.ros.config.yaml_nodes import YamlNode, yaml_root
 from grader.ros.package.package import MANIFEST, SETUP, Package
 from grader.ros.python.python_file import PythonFile, argument
-from grader.ros.xml.parsing import Element, root_of
+from grader.ros.xml.parsing import Element, parse_root
 from grader.ros.xml.urdf_format import JOINT_TYPES, PARTS
 
 _COMMA = re.compile(r"\s*,")
@@ -116,7 +116,7 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
 
     The place does not change if lines are added.
     """
-    root, source = root_of(text)
+    root, source = parse_root(text)
     if root is None:
         return
     labels: dict[Element, str] = {}

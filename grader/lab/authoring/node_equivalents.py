@@ -64,7 +64,7 @@ class _NodeCall(NamedTuple):
     node: StartedNode
     facts: NodeFacts
 
-    def segment_of(self, name: str) -> str:
+    def read_argument(self, name: str) -> str:
         """Return the text of an argument; empty if it is not given."""
         given = argument(self.call, name)
         return self.file.segment(given.value) if given is not None else ""
@@ -120,7 +120,7 @@ def _values_given(submission: Submission, each: _NodeCall) -> dict[str, Any] | N
     """Return the parameters that a node gets; None where one is not plain."""
     workspace = submission.workspace
     try:
-        name = workspace.code.name_of(each.node) or ""
+        name = workspace.code.find_name(each.node) or ""
         given = workspace.parameters.read_given(each.package, each.node, name)
     except NotDecided:
         return None
@@ -235,7 +235,7 @@ def _is_started_otherwise(submission: Submission, path: str, calls: Sequence[_No
     code = submission.workspace.code
     of_file = 0
     for _, node in submission.workspace.launches.nodes:
-        of_file += any(facts.location.path == path for facts in code.nodes_of(node))
+        of_file += any(facts.location.path == path for facts in code.find_nodes(node))
     in_file = [
         facts
         for nodes in code.by_package.values()
@@ -283,15 +283,15 @@ def _can_join(submission: Submission, each: _NodeCall, named: Collection[str]) -
     is_plain = has_name and not node.namespace and node.remaps == () and not node.arguments
     is_class = facts.location.path.endswith(".py") and bool(facts.class_name)
     is_known = node.parameters is not None and node.name not in named
-    if not (is_plain and is_class and is_known and _module_of(submission, each)):
+    if not (is_plain and is_class and is_known and _find_module(submission, each)):
         return False
     others = ("condition", "ros_arguments", "on_exit", "respawn", "prefix")
-    return not any(map(each.segment_of, others)) and _has_no_arguments(submission, facts)
+    return not any(map(each.read_argument, others)) and _has_no_arguments(submission, facts)
 
 
-def _module_of(submission: Submission, each: _NodeCall) -> str:
+def _find_module(submission: Submission, each: _NodeCall) -> str:
     """Return the module of a program, as setup.py has it once; empty if it does not."""
-    owner = submission.workspace.package_of(each.node)
+    owner = submission.workspace.find_package(each.node)
     if owner is None or owner.is_cmake:
         return ""
     setup = read_text(submission, owner.path(SETUP))
@@ -326,18 +326,18 @@ def _are_separate(first: StartedNode, second: StartedNode) -> bool:
 
 def _join(submission: Submission, first: _NodeCall, second: _NodeCall) -> Files:
     """Return a program with two nodes, in place of the first one, and what starts it."""
-    owner = submission.workspace.package_of(first.node)
-    entry = _entry_of(second)
+    owner = submission.workspace.find_package(first.node)
+    entry = _find_entry(second)
     parameters = _joined_lists(first, second)
     if owner is None or entry is None or parameters is None:
         return {}
     imports, made = [], []
     for each in (first, second):
         name = each.facts.class_name.rpartition(".")[2]
-        imports.append(f"from {_module_of(submission, each)} import {name}")
+        imports.append(f"from {_find_module(submission, each)} import {name}")
         made.append(f"{name}()")
     program = _PROGRAM_TEXT.format(imports="\n".join(imports), made=", ".join(made))
-    module = _module_of(submission, first)
+    module = _find_module(submission, first)
     before = f"{first.node.executable} *= *{re.escape(module)}:\\w+"
     after = f"{_PROGRAM} = {module.rpartition('.')[0]}.{_PROGRAM}:main"
     setup = owner.path(SETUP)
@@ -353,7 +353,7 @@ def _joined_lists(first: _NodeCall, second: _NodeCall) -> str | None:
     """Return the items of both lists of parameters; None where one is no plain list."""
     items = []
     for each in (first, second):
-        text = each.segment_of("parameters")
+        text = each.read_argument("parameters")
         if text and (text[0] != "[" or text[-1] != "]"):
             return None
         inner = text[1:-1].strip().rstrip(",")
@@ -362,7 +362,7 @@ def _joined_lists(first: _NodeCall, second: _NodeCall) -> str | None:
     return ", ".join(items)
 
 
-def _entry_of(each: _NodeCall) -> ast.expr | None:
+def _find_entry(each: _NodeCall) -> ast.expr | None:
     """Return the entry of a launch description that starts a node, if nothing else names it."""
     for call in each.file.calls("LaunchDescription"):
         entries = call.args[0].elts if call.args and isinstance(call.args[0], ast.List) else []

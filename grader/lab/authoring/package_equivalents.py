@@ -339,7 +339,7 @@ def _without_names(submission: Submission, package: Package) -> Files:
             ]
             if given is None or not name or not same_nodes:
                 continue
-            if submission.workspace.code.name_of(same_nodes[0]._replace(node_name="")) == name:
+            if submission.workspace.code.find_name(same_nodes[0]._replace(node_name="")) == name:
                 spans.append(file.span(given))
         text = file.text
         for start, end in sorted(spans, reverse=True):

@@ -138,7 +138,7 @@ def package_facts(submission: Submission) -> Facts:
     agreement = read_agreement(submission.workspace) if submission.lab_packages else None
     named = agreement.files if agreement is not None and agreement.holds("files") else frozenset()
     for package, prefix in _packages(submission):
-        facts = _facts_of(submission, package, named, prefix)
+        facts = _list_package_facts(submission, package, named, prefix)
         about = f"{_THE_PACKAGE} {package.name}" if prefix else _THE_PACKAGE
         of = package.name if prefix else ""
         for fact in facts:
@@ -254,15 +254,15 @@ def _changed_by_passing(submission: Submission, launch: Launch) -> Iterator[tupl
         if not passed.when or not passed.values or passed.path not in own_files:
             continue
         package, path = own_files[passed.path]
-        defaults = [_parameters_of(node) for node in package.launch(path).nodes]
+        defaults = [_list_parameters(node) for node in package.launch(path).nodes]
         for node in launch.nodes:
             if node.included_by and node.location.path == package.path(path):
-                for name, value in _parameters_of(node).items():
+                for name, value in _list_parameters(node).items():
                     if not any(repr(each.get(name)) == repr(value) for each in defaults):
                         yield name, value
 
 
-def _parameters_of(node: StartedNode) -> dict[str, Any]:
+def _list_parameters(node: StartedNode) -> dict[str, Any]:
     """Return the values that a launch file itself gives the parameters of a node."""
     values: dict[str, Any] = {}
     for given in node.parameters or ():
@@ -305,7 +305,7 @@ def _builds(submission: Submission) -> tuple[str, ...]:
     return tuple(f"{prefix}setup_imports" for _, prefix in _packages(submission))
 
 
-def _facts_of(
+def _list_package_facts(
     submission: Submission, package: Package, named: Collection[str], prefix: str
 ) -> Iterator[Fact]:
     """Yield what may be true of a package.
@@ -632,7 +632,7 @@ def _lifecycle_nodes(submission: Submission, launch: Launch) -> list[str]:
     for node in launch.nodes:
         facts = code.own_node(node) if node.when else None
         data = content(submission, facts.location.path) if facts is not None else None
-        name = code.name_of(node)
+        name = code.find_name(node)
         if data is not None and name and b"LifecycleNode" in data:
             names.append(name)
     return names

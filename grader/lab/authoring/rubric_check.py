@@ -71,7 +71,7 @@ def reference_failures(rubric: Rubric) -> _Failures:
     assert rubric.solution is not None
     unearned = grade(rubric, rubric.solution.submission).unearned
     failures = [
-        (_path_of(result.criterion), result.criterion.id, result.outcome) for result in unearned
+        (_make_path(result.criterion), result.criterion.id, result.outcome) for result in unearned
     ]
     failures += _carried_failures(rubric)
     failures.sort(key=lambda failure: failure[0][1])
@@ -91,10 +91,12 @@ def reference_failures(rubric: Rubric) -> _Failures:
 
 
 def _lines(rubric: Rubric, notes: Iterable[tuple[TomlPath, str]]) -> tuple[str, ...]:
-    return tuple(one_line_each(rubric.path, [(rubric.line_of(path), what) for path, what in notes]))
+    return tuple(
+        one_line_each(rubric.path, [(rubric.find_line(path), what) for path, what in notes])
+    )
 
 
-def _path_of(criterion: Criterion) -> TomlPath:
+def _make_path(criterion: Criterion) -> TomlPath:
     return ("criterion", criterion.position, "with")
 
 
@@ -131,7 +133,7 @@ def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]
             alone = replace(rubric, criteria=(row,))
             for result in decide(alone, rubric.solution.submission, {row.id}):
                 if result.outcome.status != "passed":
-                    # Of a single table the place has no index; `place_of` then finds the
+                    # Of a single table the place has no index; `find_place` then finds the
                     # criterion's.
                     several = (index,) if len(criterion.carried) > 1 else ()
                     path = ("criterion", criterion.position, "carried", *several, "with")
@@ -153,7 +155,7 @@ def _unresolved_selectors(rubric: Rubric) -> Iterator[tuple[TomlPath, str]]:
                     f"{criterion.id} names a link by its place in the tree, and the reference "
                     "has no such link"
                 )
-                yield _path_of(criterion), f"{what}: {error}"
+                yield _make_path(criterion), f"{what}: {error}"
 
 
 def likely_mistakes(rubric: Rubric) -> Sequence[str]:

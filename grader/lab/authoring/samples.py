@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
 from grader.base.text import printable_path
-from grader.base.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
+from grader.base.toml_file import KeyTable, TomlRowReader, raise_complaints, read_toml
 from grader.base.toml_types import toml_type
 from grader.files.reading import read_capped
 from grader.lab.grading.grade import grade
@@ -89,7 +89,7 @@ def _sample(path: Path) -> Sample:
     text, table = read_toml(read_capped(path, advice=""), path)
     reader = TomlRowReader()
     values = reader.row((), table, _TABLE)
-    complain_of(reader.complaints, text, path)
+    raise_complaints(reader.complaints, text, path)
     return Sample(path.parent, **values)
 
 

@@ -37,7 +37,7 @@ def copied(root: Element) -> Element:
     return copy
 
 
-def text_of(tree: Element, indent: str = "  ") -> str:
+def write_tree(tree: Element, indent: str = "  ") -> str:
     """Return a tree as text, without namespaces that are not used."""
     etree.cleanup_namespaces(tree)
     etree.indent(tree, indent)
@@ -64,7 +64,7 @@ def attribute_numbers(
     return [float(piece) for piece in text.split()]
 
 
-def vector_of(element: Element | None, attribute: str, default: str = "0 0 0") -> Vector:
+def read_vector(element: Element | None, attribute: str, default: str = "0 0 0") -> Vector:
     """Return the three numbers of an attribute."""
     x, y, z = attribute_numbers(element, attribute, default)
     return x, y, z
@@ -126,7 +126,7 @@ def move_frame(tree: Element, link: Element, change: Transform) -> None:
     set_pose(held, pose(held) @ change)
     axis = held.find("axis")
     if axis is not None:
-        axis.set("xyz", attribute_text(back.rotate(vector_of(axis, "xyz"))))
+        axis.set("xyz", attribute_text(back.rotate(read_vector(axis, "xyz"))))
     elif held.get("type") != "fixed":
         etree.SubElement(held, "axis", {"xyz": attribute_text(back.rotate((1.0, 0.0, 0.0)))})
     for element in link.iterchildren("visual", "collision", "inertial"):

@@ -22,12 +22,12 @@ from grader.ros.package.trees import (
     TreeEntry,
     is_path,
     read_tree,
-    steps_of,
+    split_path,
     xml_entry,
 )
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import Reading
-from grader.ros.xml.elements import matches_value, name_of, readable, xml_text
+from grader.ros.xml.elements import matches_value, read_name, readable, xml_text
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import numbers_in
 
@@ -46,7 +46,7 @@ _Path = Annotated[str, Constraint("a path such as gazebo[@reference='lidar']/sen
 def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
     """The text of an element that ROS 2 reads is compared, not what it means."""
     frames = ("fixed joints split", "frames moved")
-    steps = steps_of(arguments.get("at") or "", is_xml=True)
+    steps = split_path(arguments.get("at") or "", is_xml=True)
     is_read = (
         arguments.get("file", _ROBOT) == _ROBOT and bool(steps) and steps[0].name in _READ_BY_ROS
     )
@@ -101,7 +101,7 @@ def entry_is(
             "robot", "", message="the file is not well-formed XML, so it has no elements"
         )
     releases = submission.package.releases if submission.package is not None else ()
-    steps = [_with_names(step, robot) for step in steps_of(at, is_xml=True)]
+    steps = [_with_names(step, robot) for step in split_path(at, is_xml=True)]
     wanted = _Wanted(steps, value, one_of, has, values or {}, tolerance, only, absent)
     tree = _robot_entry(reading, root, releases)
     outcome = _judge(tree, wanted, _IN_ROBOT)
@@ -129,7 +129,7 @@ def _entry_of_file(
 
         package, file = used_file(submission.workspace, file)
     tree = read_tree(package, file)
-    wanted = _Wanted(steps_of(at, is_xml=tree.is_xml), **expected)
+    wanted = _Wanted(split_path(at, is_xml=tree.is_xml), **expected)
     return _judge(tree, wanted, f"directly in <{tree.name}>" if tree.is_xml else f"in {file}")
 
 
@@ -191,18 +191,18 @@ class _Wanted(NamedTuple):
         """
         if self.value is not None and not self._have(entries, self.value):
             return False
-        if self.one_of is not None and not self._is_any_of(entries, self.one_of):
+        if self.one_of is not None and not self._has_any(entries, self.one_of):
             return False
-        if self.only and len(_items_of(entries)) != self._count_expected():
+        if self.only and len(_expand_list(entries)) != self._count_expected():
             return False
-        return self.has is None or self._are_among(_items_of(entries), self.has)
+        return self.has is None or self._are_among(_expand_list(entries), self.has)
 
     def _count_expected(self) -> int:
         """Return how many items are expected."""
         expected = self.has if self.has is not None else self.value
         return len(expected) if isinstance(expected, list) else 1
 
-    def _is_any_of(self, entries: Sequence[TreeEntry], values: Sequence[Scalar]) -> bool:
+    def _has_any(self, entries: Sequence[TreeEntry], values: Sequence[Scalar]) -> bool:
         return any(self.equals(entry, value) for entry in entries for value in values)
 
     def wrong(self, search: Search, entry: TreeEntry) -> list[str]:
@@ -244,7 +244,7 @@ class _Wanted(NamedTuple):
         For a list, whether one is the list, or several have its items.
         """
         if not isinstance(expected, list):
-            return self._is_any_of(entries, [expected])
+            return self._has_any(entries, [expected])
         lists = [entry.children for entry in entries if entry.is_list]
         for items in lists:
             if len(items) == len(expected) and all(map(self.equals, items, expected)):
@@ -270,10 +270,10 @@ def _library_name(text: str) -> str:
 
 
 def _inside(search: Search, entry: TreeEntry, key: str) -> list[TreeEntry]:
-    return search.find(entry, steps_of(key, is_xml=entry.is_xml))
+    return search.find(entry, split_path(key, is_xml=entry.is_xml))
 
 
-def _items_of(entries: Sequence[TreeEntry]) -> list[TreeEntry]:
+def _expand_list(entries: Sequence[TreeEntry]) -> list[TreeEntry]:
     """Return entries, with the items of a list in its place."""
     items: list[TreeEntry] = []
     for entry in entries:
@@ -355,7 +355,7 @@ def _nested(entry: TreeEntry) -> Iterator[tuple[TreeEntry, TreeEntry]]:
 
 def _none_fits(search: Search, named: Sequence[TreeEntry], step: PathStep, shown: str) -> Outcome:
     """Return the failure of entries of which none has the values of the conditions."""
-    rows = _items_of(named) or list(named)
+    rows = _expand_list(named) or list(named)
     known: dict[str, None] = {}  # the entries, as they would be named
     texts: dict[str, list[str]] = {key: [] for key, _ in step.conditions}  # that the file has
     for row in rows:
@@ -426,7 +426,7 @@ def _fault_text(key: str, entries: Sequence[TreeEntry], expected: Content) -> st
 
 def _texts(entries: Sequence[TreeEntry]) -> str:
     """Return the texts of entries, or of the items of lists."""
-    return enumerated([*map(_entry_text, _items_of(entries))], MAX_NAMED) or "empty"
+    return enumerated([*map(_entry_text, _expand_list(entries))], MAX_NAMED) or "empty"
 
 
 def _entry_text(entry: TreeEntry) -> str:
@@ -490,8 +490,8 @@ def _kept(robot: Configuration, root: Element) -> Element:
     copy = deepcopy(root)
     for tag, element in enumerate([*copy.iter()]):
         link_element = element.getparent()
-        is_part = name_of(element) in _PARTS and tag not in kept_tags
-        if is_part and link_element is not None and name_of(link_element) == "link":
+        is_part = read_name(element) in _PARTS and tag not in kept_tags
+        if is_part and link_element is not None and read_name(link_element) == "link":
             link_element.remove(element)
     return copy
 
@@ -503,7 +503,7 @@ def _dropped_part(tree: TreeEntry, wanted: _Wanted) -> MissingElement:
     link = next(link for link in links if below.found_in(link))
     steps = [*wanted.steps]
     for key in wanted.values:
-        steps += steps_of(key, is_xml=True)
+        steps += split_path(key, is_xml=True)
     part = next(step.name for step in steps if step.name in _PARTS)
     name = next((child.text for child in link.children if child.name == "@name"), "")
     message = f"ROS 2 drops {_shown(wanted.steps, tree)}"

@@ -156,9 +156,9 @@ def above_others(
     """
     bottom, _ = span(robot, link, relative_to, Z_AXIS)
     highest, top = "", -inf
-    root = robot.root_of(link)
+    root = robot.find_root(link)
     for other in robot.robot.links:
-        if other.name == link or robot.root_of(other.name) != root or not other.visuals:
+        if other.name == link or robot.find_root(other.name) != root or not other.visuals:
             continue
         _, height = span(robot, other.name, relative_to, Z_AXIS)
         if height > top:

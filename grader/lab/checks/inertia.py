@@ -76,7 +76,7 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
     impossible = _refuse_impossible(link, inertial)
     if impossible is not None:
         return impossible
-    what, solid = _solid_of(robot, link)
+    what, solid = _find_solid(robot, link)
     try:
         difference = solid.difference(inertial)
     except ValueError:
@@ -144,7 +144,7 @@ def _refuse_impossible(link: str, inertial: Inertial) -> Outcome | None:
     return None
 
 
-def _solid_of(robot: Configuration, link: str) -> tuple[str, Solid]:
+def _find_solid(robot: Configuration, link: str) -> tuple[str, Solid]:
     """Return what shapes of a link count, in words, and those that have a volume.
 
     Raises UnknownShape for a mesh, MissingElement for a link without a shape.

@@ -75,10 +75,10 @@ def files_of_kind(package: Package, kind: FileKind, name: str) -> Sequence[str]:
         return named or paths
     from grader.ros.package.robots import (  # late: the URDF usually has the lab's name
         find_robots,
-        parts_of,
+        list_parts,
     )
 
-    parts = parts_of(find_robots(package.tree))
+    parts = list_parts(find_robots(package.tree))
     return [path for path in paths if path not in parts] or paths
 
 

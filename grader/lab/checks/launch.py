@@ -13,7 +13,7 @@ from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import About
 from grader.lab.checks.installed_files import INSTALLING, files_of_kind, require_installed
-from grader.lab.checks.launching import STOPS, fault_that_stops, launch_of, path_of_launch
+from grader.lab.checks.launching import STOPS, evaluate_launch, fault_that_stops, path_of_launch
 from grader.lab.checks.outcome import Outcome, failed, judged, passed
 from grader.lab.checks.started_nodes import Fault, Wanted, find_faults
 from grader.lab.submission.submission import Submission
@@ -116,7 +116,7 @@ def node_runs(
             launch file, or their code.
         built: Whether it must find the files that it reads; if not, only what else stops it counts.
     """
-    evaluated = launch_of(package, launch)
+    evaluated = evaluate_launch(package, launch)
     if evaluated.faults:
         raise fault_that_stops(path_of_launch(package, launch), evaluated)
     if package.shadows_ros:
@@ -127,7 +127,7 @@ def node_runs(
     wanted_nodes = tuple(nodes or ())
     choices = [_names_in(evaluated, node.split(" or ")) for node in wanted_nodes]
     if evaluated.components:
-        choices = [_with_components_of(submission, evaluated, names) for names in choices]
+        choices = [_add_components(submission, evaluated, names) for names in choices]
     missing = _missing_nodes(evaluated, choices)
     if missing and not _may_start(evaluated, missing):
         return _fail_missing(evaluated, missing, wanted_nodes)
@@ -191,9 +191,7 @@ def _names_in(launch: "Launch", names: Iterable[str]) -> list[str]:
     ]
 
 
-def _with_components_of(
-    submission: Submission, launch: "Launch", names: Sequence[str]
-) -> list[str]:
+def _add_components(submission: Submission, launch: "Launch", names: Sequence[str]) -> list[str]:
     """Return names of nodes with those of the components that are the nodes of these programs."""
     code = submission.workspace.code
     all_names = [*names]
@@ -203,7 +201,7 @@ def _with_components_of(
         for program in own_code.programs if own_code is not None else ():
             if program.name == executable and program.nodes:
                 for node in launch.nodes:
-                    if node.package == package and (*code.nodes_of(node),) == program.nodes:
+                    if node.package == package and (*code.find_nodes(node),) == program.nodes:
                         all_names.append(node.name)
     return [*dict.fromkeys(all_names)]
 
@@ -311,7 +309,7 @@ def _look_for_files(
     """
     if not started and package.launch(path_of_launch(package, name)).syntax is not None:
         return passed("the launch file cannot be read, so it looks for no file")
-    launch = launch_of(package, name)
+    launch = evaluate_launch(package, name)
     places = find_places(package, launch, "urdf", "rviz", "include", "read", built=built)
     if not (needs_robot or package.rviz_files):  # then RViz may start without a file
         places = [place for place in places if place.file.purpose != "rviz"]

@@ -43,7 +43,7 @@ def launch_together(package: Package, submission: Submission, name: str | None) 
     workspace = submission.workspace
     stopped: list[MissingElement] = []
     if name is not None:
-        path, launch = package.path(path_of_launch(package, name)), launch_of(package, name)
+        path, launch = package.path(path_of_launch(package, name)), evaluate_launch(package, name)
         if launch.faults:
             raise fault_that_stops(path, launch)
         launches = [launch]
@@ -105,7 +105,7 @@ def _why_not_run(
     """Return why a node certainly cannot run; None if it may."""
     from grader.ros.package.entry_points import certain_fault
 
-    owner = workspace.package_of(node)
+    owner = workspace.find_package(node)
     if owner is None:
         return None
     syntax = fault_of_syntax(workspace, node, owner.name)
@@ -128,7 +128,7 @@ def path_of_launch(package: Package, name: str) -> str:
     return path
 
 
-def launch_of(package: Package, name: str) -> "Launch":
+def evaluate_launch(package: Package, name: str) -> "Launch":
     """Return a launch file, evaluated.
 
     Raises MissingElement, and NotDecided for one that is not read.

@@ -14,7 +14,7 @@ from grader.lab.checks.visuals import main_visual
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Cylinder
 from grader.ros.urdf.visuals import axis_place, placed
-from grader.ros.urdf.wheel_travel import travel_of, turning_joint
+from grader.ros.urdf.wheel_travel import find_travel, turning_joint
 
 ABOUT = {
     "rolls_forward": About(picture="wheel"),
@@ -53,7 +53,7 @@ def rolls_forward(
     robot = _as_turning(robot, link) if any_type else robot
     joint = turning_joint(robot, link, base)
     ahead, upward = unit(forward) or forward, unit(up) or up
-    travel, why_not = travel_of(robot, link, joint, base, upward)
+    travel, why_not = find_travel(robot, link, joint, base, upward)
     at, detail = axis_place(joint), f" (joint {joint.name!r})"
     if travel is None:
         message = f"{link!r} does not roll when its joint turns: {why_not}"

@@ -66,7 +66,7 @@ class Outcome(NamedTuple):
     cause: str = ""
 
 
-def fault_of(returned: object) -> str:
+def find_fault(returned: object) -> str:
     """Return what is wrong with the value that a check returned; empty for a valid Outcome."""
     if not isinstance(returned, Outcome):
         return f"it returned {type(returned).__name__}, not an Outcome"
@@ -120,7 +120,9 @@ def pending(message: str, cause: str = "", at: _AnyPlace = None, *, problem: str
 
     `cause` is the reason without what differs between students.
     """
-    return Outcome("pending", message, location=location_of(at), mistake=cause, problem=problem)
+    return Outcome(
+        "pending", message, location=compute_location(at), mistake=cause, problem=problem
+    )
 
 
 def failed(
@@ -153,13 +155,13 @@ def judged(
     detail: str = "",
 ) -> Outcome:
     """Return a measurement that passes or fails; only a failure has a place to look at."""
-    location = None if fine else location_of(at)
+    location = None if fine else compute_location(at)
     mistake = message if detail and not fine else ""
     status: Status = "passed" if fine else "failed"
     return Outcome(status, message + detail, actual, expected, tolerance, unit, location, mistake)
 
 
-def location_of(at: _AnyPlace) -> Location | None:
+def compute_location(at: _AnyPlace) -> Location | None:
     """Return the place in the file, computed on demand: most places are never used."""
     if isinstance(at, LazyLocation):
         return at.resolve()
@@ -223,7 +225,7 @@ def measured_turn(
     if turned <= angle + SLACK:
         return position
     message = f"{position.message}; its orientation is {in_degrees(turned)} off {wanted}"
-    return position._replace(status="failed", message=message, location=location_of(at))
+    return position._replace(status="failed", message=message, location=compute_location(at))
 
 
 def _off_along(axis: int, off: float, frame: str) -> str:

@@ -124,10 +124,10 @@ def _value_or_default(
 ) -> tuple[str, ParameterValue]:
     """Return the value that a node gets, or else its default, after the words for that.
 
-    Raises MissingElement and NotDecided, as `value_of` does.
+    Raises MissingElement and NotDecided, as `find_value` does.
     """
     try:
-        return f"{quoted(node)} gets {parameter} =", value_of(submission, node, parameter)
+        return f"{quoted(node)} gets {parameter} =", find_value(submission, node, parameter)
     except MissingElement:
         default = submission.default_value(node, parameter) if or_default else None
         if default is None:
@@ -161,7 +161,7 @@ def _written_otherwise(
     return None if has_it else next(iter(known), None)
 
 
-def value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
+def find_value(submission: Submission, node: str, parameter: str) -> ParameterValue:
     """Return the value that a node gets.
 
     Raises MissingElement if it gets none, NotDecided where that is not known.
@@ -223,8 +223,8 @@ def _nameless(workspace: Workspace) -> list[tuple[Package, StartedNode]]:
     """
     nameless = []
     for _, node in workspace.launches.nodes:
-        package = workspace.package_of(node)
-        if package is not None and workspace.code.name_of(node) is None:
+        package = workspace.find_package(node)
+        if package is not None and workspace.code.find_name(node) is None:
             nameless.append((package, node))
     return nameless
 

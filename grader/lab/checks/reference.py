@@ -114,7 +114,7 @@ def _find_bases(
     """Return the links in whose frames the poses of the robot and of the reference are compared."""
     if relative_to:
         return _link_name(robot, relative_to), _name_in_reference(reference, relative_to)
-    root = reference.root_of(_name_in_reference(reference, links[0]))
+    root = reference.find_root(_name_in_reference(reference, links[0]))
     return root if robot.robot.has_link(root) else _link_name(robot, "@root"), root
 
 

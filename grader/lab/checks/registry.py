@@ -111,7 +111,7 @@ def unused_checks() -> list[tuple[str, str]]:
     """
     entries = _entry_points()
     return sorted(
-        (name, _package_of(entry))
+        (name, _name_package(entry))
         for name in set(_PLACES) & set(entries)
         for entry in entries[name]
     )
@@ -128,7 +128,7 @@ def find_check(name: str) -> Check | None:
         return _own_check(_PLACES[name])
     entries = _entry_points().get(name, [])
     if len(entries) > 1:  # which of them is found first depends on the machine
-        packages = enumerated(sorted(map(_package_of, entries)))
+        packages = enumerated(sorted(map(_name_package, entries)))
         raise InputError(
             f"the check {name} is in several packages, {packages}: uninstall all but one"
         )
@@ -147,7 +147,7 @@ def usable_check(name: str) -> Check | None:
 
 
 def _load_plugin(name: str, entry: "EntryPoint") -> Check:
-    distribution = _package_of(entry)
+    distribution = _name_package(entry)
     try:
         return describe(entry.load(), distribution)._replace(name=name)
     except (KeyboardInterrupt, OutOfTime):
@@ -160,7 +160,7 @@ def _load_plugin(name: str, entry: "EntryPoint") -> Check:
         ) from None
 
 
-def _package_of(entry: "EntryPoint") -> str:
+def _name_package(entry: "EntryPoint") -> str:
     if entry.dist is not None:
         return entry.dist.name
     return entry.value.partition(":")[0]

@@ -218,7 +218,7 @@ def _why_off(display: "Display") -> str:
 
 def _frames_of_link(opened: "Launch | None", link: str) -> tuple[str | None, ...]:
     if opened is not None:
-        return opened.frames_of(link)
+        return opened.list_frames(link)
     return (link,)
 
 

@@ -101,11 +101,11 @@ def _with_node_names(launch: "Launch", workspace: "Workspace") -> "Launch":
     """Return a launch file with the nodes that may start, named as their programs name them."""
     named = []
     for node in launch.nodes:
-        has_several = len(workspace.code.nodes_of(node)) > 1  # each with a name of its own
+        has_several = len(workspace.code.find_nodes(node)) > 1  # each with a name of its own
         if node.when is not False and has_several:
             named.append(node)
         elif node.when is not False:
-            named.append(node._replace(node_name=workspace.code.name_of(node)))
+            named.append(node._replace(node_name=workspace.code.find_name(node)))
     return launch._replace(nodes=tuple(named))
 
 
@@ -115,7 +115,7 @@ def _not_active(launch: "Launch", workspace: "Workspace", names: Sequence[str]) 
         return
     texts = [*workspace.texts.launch_texts]
     for package in workspace.packages:
-        sources = workspace.texts.sources_of(package, _CODE)
+        sources = workspace.texts.read_sources(package, _CODE)
         texts += [source.text for source in sources]
     if any(_ACTIVATES.search(text) for text in texts):
         return
@@ -165,7 +165,7 @@ def _not_opened(launch: "Launch", workspace: "Workspace", wanted: Wanted) -> Ite
     ):
         typed = names if isinstance(names, Mapping) else dict.fromkeys(names or (), "")
         for name, kind in typed.items():
-            yield topics.fault_of(verb, name, kind)
+            yield topics.find_fault(verb, name, kind)
 
 
 def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]:
@@ -185,7 +185,7 @@ def _ill_started(launch: "Launch", names: Sequence[str], wanted: Wanted) -> Faul
 
     None of its name has the remappings and arguments.
     """
-    findings = [(node, _fault_of(node, wanted)) for node in launch.nodes if node.name in names]
+    findings = [(node, _find_fault(node, wanted)) for node in launch.nodes if node.name in names]
     if not findings or any(fault is None and node.when for node, fault in findings):
         return None
     faults = [fault for _, fault in findings if fault is not None]
@@ -196,7 +196,7 @@ def _ill_started(launch: "Launch", names: Sequence[str], wanted: Wanted) -> Faul
     return Fault(f"{' or '.join(names)} has these remappings and arguments", is_certain=False)
 
 
-def _fault_of(node: "StartedNode", wanted: Wanted) -> Fault | None:
+def _find_fault(node: "StartedNode", wanted: Wanted) -> Fault | None:
     """Return what is wrong with the remappings and arguments of a node."""
     if node.arguments is None:  # what launch files of other packages give their nodes is not listed
         return Fault("", is_certain=False)
@@ -210,7 +210,7 @@ def _fault_of(node: "StartedNode", wanted: Wanted) -> Fault | None:
             return Fault(
                 message, node.location, is_certain=actual is not None and "~" not in actual
             )
-    words = [word for given in node.arguments for word in _words_of(given)]
+    words = [word for given in node.arguments for word in _split_option(given)]
     for phrase in _phrases(wanted.arguments or ()):
         if not any(_is_phrase(words[at:], phrase) for at in range(len(words))):
             message = f"{node.executable} does not get the arguments {quoted(' '.join(phrase))}"
@@ -220,7 +220,7 @@ def _fault_of(node: "StartedNode", wanted: Wanted) -> Fault | None:
     return None
 
 
-def _words_of(word: str | None) -> Sequence[str | None]:
+def _split_option(word: str | None) -> Sequence[str | None]:
     """Return the option and the value of --option=value; else the word."""
     if word is not None and word.startswith("--"):
         return word.split("=", 1)
@@ -230,7 +230,7 @@ def _words_of(word: str | None) -> Sequence[str | None]:
 def _phrases(arguments: Iterable[str]) -> Iterator[Sequence[str]]:
     """Yield each option with the words behind it; before the first option, each word."""
     phrase: list[str] = []
-    for word in filter(None, (word for given in arguments for word in _words_of(given))):
+    for word in filter(None, (word for given in arguments for word in _split_option(given))):
         is_option = word.startswith("-") and not numbers_in(word)
         if phrase and (is_option or not phrase[0].startswith("-")):
             yield phrase
@@ -337,7 +337,7 @@ class _NodeTopics:
         self._unread: list[Fault] = []  # of programs that cannot run, and so open nothing
         self._stopping = stopping_mistakes(workspace)
         for node in launch.nodes:
-            package = workspace.package_of(node)
+            package = workspace.find_package(node)
             bridged = opened_by_bridge(workspace, node)
             if bridged is not None:
                 ends, is_known = bridged
@@ -359,7 +359,7 @@ class _NodeTopics:
         code = workspace.code.by_package.get(package)
         doubts = list(code.doubts) if code is not None else []
         syntax = fault_of_syntax(workspace, node, package)
-        own_nodes = workspace.code.all_nodes_of(node)
+        own_nodes = workspace.code.find_all_nodes(node)
         paths = [own_node.location.path for own_node in own_nodes]
         mistake = next((self._stopping[path] for path in paths if path in self._stopping), None)
         runs = bool(own_nodes)
@@ -375,7 +375,7 @@ class _NodeTopics:
         self._is_open = self._is_open or bool(doubts)
         return runs
 
-    def fault_of(self, verb: str, name: str, message_type: str) -> Fault | None:
+    def find_fault(self, verb: str, name: str, message_type: str) -> Fault | None:
         """Return that no node publishes, subscribes to, serves or calls a name with a type."""
         full_name = f"/{name.removeprefix('/')}"
         python_type = re.sub("[/:]+", ".", message_type)

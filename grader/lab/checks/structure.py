@@ -245,7 +245,7 @@ def _joint_above_root(
     parent_joint = robot.parent_joints.get(link)
     if parent_joint is None or not links:
         return parent_joint
-    robot.root_of(link)  # raises for a loop of joints
+    robot.find_root(link)  # raises for a loop of joints
     wrong = (
         joint for joint in reversed(robot.chain(link)) if not _is_of_frame(robot, joint, links)
     )
@@ -287,7 +287,7 @@ def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
     parent_joint = robot.parent_joints.get(link)
     if parent_joint is None:
         return any(joint.parent == link for joint in named)
-    is_joined = robot.robot.has_link(parent) and robot.root_of(parent) == robot.root_of(link)
+    is_joined = robot.robot.has_link(parent) and robot.find_root(parent) == robot.find_root(link)
     path = robot.between(parent, link) if is_joined else ()
     return any(joint.known in named for joint in (*path, parent_joint))
 

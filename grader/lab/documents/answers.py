@@ -22,8 +22,8 @@ from grader.lab.documents.headings import (
     has_words,
     is_about,
     matches,
-    question_of,
     read_label,
+    read_question,
     stem,
 )
 
@@ -245,7 +245,7 @@ class _AnswerSearch:
         ranked: list[tuple[tuple[bool, ...], Passage]] = []
         for document in self._read:
             for head in self._headings_about(wanted, document):
-                passage = self._passage_of(document, head)
+                passage = self._find_passage(document, head)
                 if passage is None:
                     continue
                 words = passage.text.split(maxsplit=_MAX_HEADING_WORDS)
@@ -280,7 +280,9 @@ class _AnswerSearch:
             if (
                 len(items) > 1 and min(min(item.label.steps) for item in items) == 1
             ):  # perhaps the points of one answer
-                whole = self._passage_of(document, items[0]._replace(end=items[-1].end)) or passage
+                whole = (
+                    self._find_passage(document, items[0]._replace(end=items[-1].end)) or passage
+                )
                 how = (
                     f"a numbered list below the heading of task {head.task}, whose items may be "
                     "steps or not"
@@ -314,14 +316,16 @@ class _AnswerSearch:
                 is_question = wanted.pattern == ("question",) and "question" in head.pattern
                 if is_question or head.pattern == wanted.pattern:
                     heads.append((document, head))
-            passages = [self._passage_of(document, head) for document, head in heads[:_MAX_MATCHES]]
+            passages = [
+                self._find_passage(document, head) for document, head in heads[:_MAX_MATCHES]
+            ]
             answers = [passage for passage in passages if passage is not None]
             match = _match_answer(wanted, self._task, answers)
             if match is not None:
                 joined.append(_joined_passage(match, [answers[index] for index in match.indices]))
         return sorted(joined, key=lambda passage: (passage.is_empty, not passage.is_certain))
 
-    def _passage_of(self, document: TextDocument, head: Heading) -> Passage | None:
+    def _find_passage(self, document: TextDocument, head: Heading) -> Passage | None:
         lines, start, end = document.lines, head.start, head.end
         while start < end and not has_words(lines[start]):
             start += 1
@@ -334,7 +338,11 @@ class _AnswerSearch:
         text = text[:_MAX_TEXT] + (" [...]" if len(text) > _MAX_TEXT else "")
         at = Location(document.file.path, start + 1, 1)
         return Passage(
-            text, at, _place_of(document, head, at), head, is_empty=self._is_question_only(text)
+            text,
+            at,
+            _describe_place(document, head, at),
+            head,
+            is_empty=self._is_question_only(text),
         )
 
     def _is_question_only(self, text: str) -> bool:
@@ -368,7 +376,7 @@ def _heading_of_file(document: TextDocument, pattern: Pattern) -> Heading:
     """Return a heading for a whole document: its name may be that of a question."""
     name = stem(document.file.name)
     task = read_label(stem(document.file.path)).task
-    matching, number = question_of(name.replace("_", " "), (pattern,))
+    matching, number = read_question(name.replace("_", " "), (pattern,))
     return Heading(
         0,
         len(document.lines),
@@ -390,7 +398,7 @@ def _joined_passage(match: _AnswerMatch, passages: list[Passage]) -> Passage:
     )
 
 
-def _place_of(document: TextDocument, head: Heading, at: Location) -> str:
+def _describe_place(document: TextDocument, head: Heading, at: Location) -> str:
     """Return where a passage is.
 
     This is its page, or its heading, or its line where editors count lines.

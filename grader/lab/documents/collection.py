@@ -187,7 +187,7 @@ class DocumentCollection:
             return _Unread(file.path, str(error))
         if _OTHER.match(text):
             return None
-        return _document_of(file, text)
+        return _make_document(file, text)
 
     def _text(self, file: File) -> str:
         match file.suffix:
@@ -286,7 +286,7 @@ def _time_of_converters() -> float:
     return times.children_user + times.children_system
 
 
-def _document_of(file: File, text: str) -> TextDocument:
+def _make_document(file: File, text: str) -> TextDocument:
     """Return the document that a text makes."""
     # Lines as git and editors count them: `splitlines` also breaks at form feeds and separators of
     # Unicode.

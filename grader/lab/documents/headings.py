@@ -200,7 +200,7 @@ def find_headings(
         if not candidate.match(line, 0, _MAX_LINE):
             continue
         above = headings[-1] if headings else None
-        heading = _heading_of(line[:_MAX_LINE], index, known, above, is_marked=not is_fenced)
+        heading = _read_heading(line[:_MAX_LINE], index, known, above, is_marked=not is_fenced)
         if heading is None:
             continue
         own_task = heading.label.task
@@ -246,7 +246,7 @@ def has_words(line: str) -> bool:
     return any(map(str.isalnum, line))
 
 
-def _heading_of(
+def _read_heading(
     line: str, index: int, patterns: Collection[Pattern], above: Heading | None, *, is_marked: bool
 ) -> Heading | None:
     """Return what a line begins, if it begins anything; its end and its tasks are not known yet."""
@@ -255,7 +255,7 @@ def _heading_of(
     text = plain.rstrip(" *_|`#\t")
     words = _first_words(plain)
     label = _label_in(words)
-    pattern, number = question_of(plain, patterns)
+    pattern, number = read_question(plain, patterns)
     level = len(marked[1]) if marked else 0
     heading = Heading(
         index, index, text, label, level, pattern=pattern, number=number, is_bold=_is_bold(line)
@@ -303,7 +303,7 @@ def _label_in(words: list[str]) -> Label:
     return read_label(match[0] if match else "")
 
 
-def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int | None]:
+def read_question(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int | None]:
     """Return the pattern that a line or name begins with, and a number.
 
     The pattern's words are in any order, the number after or between them.

@@ -38,7 +38,7 @@ _DOCUMENTS = (
 )
 
 
-def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture | NotShown, ...]:
+def find_pictures(result: Result, submission: Submission) -> tuple[EmbeddedPicture | NotShown, ...]:
     """Return the pictures and PDF files of a criterion that needs manual grading.
 
     And the files that are not shown.
@@ -98,7 +98,7 @@ def is_empty(result: Result, report: Report) -> bool:
     )
 
 
-def content_of(result: Result, report: Report) -> str:
+def find_content(result: Result, report: Report) -> str:
     """Return the written answer without empty lines, if it is all that there is to read.
 
     Else an empty text.
@@ -109,7 +109,7 @@ def content_of(result: Result, report: Report) -> str:
     if _has_no_answer(result):
         documents, unread = _loose_documents(result, report.submission)
         content, is_certain = (
-            "\n".join(line for one in documents for line in _lines_of(one)),
+            "\n".join(line for one in documents for line in _list_lines(one)),
             not unread,
         )
     if not (_is_question(result) and isinstance(content, str) and is_certain) or _loose_files(
@@ -129,7 +129,7 @@ def loose_lines(result: Result, submission: Submission, *, is_anonymous: bool = 
     lines = list[str]()
     for number, one in enumerate(documents, 1):
         name = f"document {number}" if is_anonymous else one.file.path
-        lines += [f"[{name}: without a heading of this question]", *_lines_of(one), ""]
+        lines += [f"[{name}: without a heading of this question]", *_list_lines(one), ""]
     lines += ["[a document that is not shown]" if is_anonymous else f"[{one}]" for one in unread]
     return first_lines(lines, _MAX_LINES)
 
@@ -147,7 +147,7 @@ def _loose_documents(
     return [one for one in read if any(map(str.strip, one.lines))], unread
 
 
-def _lines_of(document: TextDocument) -> list[str]:
+def _list_lines(document: TextDocument) -> list[str]:
     return [_PICTURE if line == PICTURE else line.rstrip() for line in document.lines]
 
 

@@ -15,7 +15,7 @@ from grader.base.source import LazyLocation, Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import Check
 from grader.lab.checks.loading import urdf_loads
-from grader.lab.checks.outcome import Outcome, fault_of, location_of, pending
+from grader.lab.checks.outcome import Outcome, compute_location, find_fault, pending
 from grader.lab.grading.report import Result
 from grader.lab.grading.subjects import Subjects
 from grader.lab.rubric.criterion import Carried, Criterion
@@ -151,7 +151,7 @@ class _Grading:
         named = (
             [robot.link(link)] if isinstance(link, str) and robot.has_link(link) else robot.links
         )
-        locations = [location_of(examined.known.location) for examined in named[:1]]
+        locations = [compute_location(examined.known.location) for examined in named[:1]]
         return outcome._replace(location=next(iter(locations), None))
 
     def _explain(self, outcome: Outcome, *thing: str, looks_at: Collection[str] = ()) -> Outcome:
@@ -164,7 +164,7 @@ class _Grading:
 
         Only if the fact that then counts instead holds.
         """
-        cause = self._cause_of(result, carried.causes)
+        cause = self._find_cause(result, carried.causes)
         if cause is None:
             return result
         try:
@@ -219,7 +219,7 @@ class _Grading:
                     return True
         return False
 
-    def _cause_of(self, result: Result, causes: Sequence[str]) -> Result | None:
+    def _find_cause(self, result: Result, causes: Sequence[str]) -> Result | None:
         """Return the failure that made the first of these criteria fail or be skipped.
 
         Only if it made the result so, too.
@@ -255,7 +255,7 @@ class _Grading:
             examined = subjects.of(check, criterion)
             arguments = subjects.named(check, arguments) if criterion.has_selectors else arguments
             outcome = check.outcome(examined, arguments)
-            fault = fault_of(outcome) if check.distribution else ""
+            fault = find_fault(outcome) if check.distribution else ""
             conditions = [f"{name}:={value}" for name, value in criterion.args.items()]
             if criterion.at and not fault:
                 conditions.append(subjects.pose_text(criterion.at))
@@ -267,7 +267,7 @@ class _Grading:
         except (MissingElement, MachineError):
             raise
         except RubricError as error:
-            place = self._rubric.place_of(("criterion", criterion.position, "with"))
+            place = self._rubric.find_place(("criterion", criterion.position, "with"))
             raise RubricError(
                 tuple(f"{place}: {criterion.id}: {line}" for line in error.complaints)
             ) from None
@@ -280,7 +280,9 @@ class _Grading:
         except BaseException as error:  # noqa: BLE001
             from traceback import format_exc  # needed only for a fault of the grader
 
-            return Result(criterion, _fault_outcome(check, _text_of(error)), traceback=format_exc())
+            return Result(
+                criterion, _fault_outcome(check, _describe_error(error)), traceback=format_exc()
+            )
 
     def _fail_or_skip(self, criterion: Criterion, missing: MissingElement) -> Result:
         """Return a failure for the first criterion that misses a thing.
@@ -299,10 +301,10 @@ class _Grading:
         outcome = Outcome(
             "failed",
             str(missing),
-            location=location_of(at),
+            location=compute_location(at),
             mistake=missing.mistake,
             problem=missing.problem,
-            absent=self._absent_of(missing),
+            absent=self._list_absent(missing),
             cause=missing.cause,
         )
         if first != criterion.id:
@@ -310,7 +312,7 @@ class _Grading:
         outcome = self._explain(outcome, missing.kind, missing.name)
         return Result(criterion, self._with_place(outcome, criterion))
 
-    def _absent_of(self, missing: MissingElement) -> tuple[str, ...]:
+    def _list_absent(self, missing: MissingElement) -> tuple[str, ...]:
         """Return what is not built yet, if that is all."""
         if missing.kind == "link":
             if missing.name in self._rubric.links and self._is_unbuilt(missing.name):
@@ -353,7 +355,7 @@ def _skip_outcome(cause: str) -> Outcome:
     return Outcome("skipped", f"skipped because {cause} failed")
 
 
-def _text_of(error: BaseException) -> str:
+def _describe_error(error: BaseException) -> str:
     """Return the type and text of an exception, or only its type where making the text fails."""
     try:
         return f"{type(error).__name__}: {error}"

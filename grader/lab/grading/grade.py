@@ -66,7 +66,7 @@ def grade(
     results = tuple(decide(rubric, submission, wanted))
     meant = None
     if any(map(_may_be_explained, results)):
-        slips = _slips_of(submission)
+        slips = _list_slips(submission)
         if slips:
             from grader.lab.grading.slips import judge_as_meant  # late: many submissions have none
 
@@ -112,7 +112,7 @@ def _may_be_explained(result: Result) -> bool:
     return result.is_lost or (result.is_open and not is_manual)
 
 
-def _slips_of(submission: Submission) -> list[Slip]:
+def _list_slips(submission: Submission) -> list[Slip]:
     """Return the slips in the files of a submission that may explain points that are not given."""
     if submission.is_costly:
         return []
@@ -319,10 +319,10 @@ def _find_convention(rubric: Rubric, submission: Submission) -> "Convention | No
     robot = submission.robot
     if robot is None or rubric.solution is None:
         return None
-    from grader.ros.urdf.conventions import convention_of  # late: most robots lose few points
+    from grader.ros.urdf.conventions import find_convention  # late: most robots lose few points
 
     with suppress(InputError):
-        return convention_of(Configuration(robot), rubric.solution.robot, rubric.base)
+        return find_convention(Configuration(robot), rubric.solution.robot, rubric.base)
     return None
 
 

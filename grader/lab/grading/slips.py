@@ -147,7 +147,7 @@ class _Readings:
         The first choice is that the URDF loads, then come failures, then all other results.
         """
         loading: list[Result] = []
-        if _parts_of(before_submission) != _parts_of(after_submission):
+        if _list_parts(before_submission) != _list_parts(after_submission):
             loading = [
                 payer for payer in before.values() if payer.criterion.check.function is urdf_loads
             ]
@@ -236,7 +236,7 @@ def _is_changed(before: Result, after: Result) -> bool:
     return (before.points, before.outcome[:6]) != (after.points, after.outcome[:6])
 
 
-def _parts_of(submission: Submission) -> tuple[frozenset[str], frozenset[str]]:
+def _list_parts(submission: Submission) -> tuple[frozenset[str], frozenset[str]]:
     """Return the names of the links and joints of the robot."""
     robot = submission.robot
     if robot is None:

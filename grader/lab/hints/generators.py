@@ -123,7 +123,7 @@ def _reference_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Pro
         yield _repairs(situation.reading)
         yield _with_xacro(situation.submission)
     if draft is not None and difference is not None and subjects & {"urdf", "robot"}:
-        links = _links_of(lost, difference)
+        links = _list_links(lost, difference)
         yield draft.corrections([*difference.names, *JOINT_TYPES])
         yield _proposals(situation, situation.exchanges)
         # Those of the links that criteria name come first: there may be more than can be tried.
@@ -175,7 +175,7 @@ def _own_number_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Pr
     """The student's own numbers with another sign, order or unit."""
     if situation.difference is not None:
         of_robot = [criterion for criterion in lost if criterion.check.subject == "robot"]
-        links = _links_of(of_robot, situation.difference)
+        links = _list_links(of_robot, situation.difference)
         yield _proposals(situation, of_own(situation.difference, links or ()))
         for criterion in of_robot:
             if criterion.check.name == "stands_level":
@@ -188,7 +188,7 @@ def _whole_link_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Pr
     if situation.difference is not None and any(
         criterion.check.subject == "robot" for criterion in lost
     ):
-        links = _links_of(lost, situation.difference)
+        links = _list_links(lost, situation.difference)
         yield _proposals(situation, whole_links(situation.difference), links)
         yield _proposals(situation, whole_elements(situation.difference), links)
 
@@ -234,7 +234,7 @@ def _pieces_by_link(pieces: Iterable[Piece], links: Sequence[str]) -> list[Piece
     return sorted(pieces, key=lambda piece: order.get(piece.link, len(order)))
 
 
-def _links_of(criteria: Iterable[Criterion], difference: RobotDifference) -> list[str] | None:
+def _list_links(criteria: Iterable[Criterion], difference: RobotDifference) -> list[str] | None:
     """Return the links whose joints and shapes decide criteria, with all above them.
 
     None if all may.

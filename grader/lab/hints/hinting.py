@@ -15,7 +15,7 @@ from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Hint, Report, Result
 from grader.lab.hints.edits import MAX_IN_HINT, FoundHint
 from grader.lab.hints.robot_draft import Draft
-from grader.lab.hints.search import HintSearch, Trials, costs_of, hints_on_slips, judged_results
+from grader.lab.hints.search import HintSearch, Trials, hints_on_slips, judged_results, sum_costs
 from grader.lab.rubric.hint_levels import HintLevel
 from grader.lab.rubric.rubric import ReferenceSolution
 from grader.lab.submission.edited import content, edited_files, with_files
@@ -69,7 +69,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
     reference = _draft(solution), partial(_package, solution)
     slips = hints_on_slips(report.meant)
     search = HintSearch(trials, *reference, report.by_convention, slips).run()
-    costs = costs_of(results)
+    costs = sum_costs(results)
     # Of several hints with which a criterion passes, it shows the first.
     shown: dict[str, FoundHint] = {}
     for found_hint in reversed(search.found):
@@ -107,7 +107,7 @@ def _hint_for(
     `entries` are the criteria that show the hints with these edits.
     """
     entry = entries.get(found_hint.edits, name)
-    earlier = _entries_of(found_hint.after, entries)
+    earlier = _list_entries(found_hint.after, entries)
     # A hint that is shown at a skipped criterion is not where a reader would look for it.
     named = [shown for shown in earlier if results[shown].outcome.status == "failed"]
     in_order = _first_at(found_hint, results[entry].outcome.location)
@@ -132,7 +132,7 @@ def _hints_of_others(
     for result in results:
         name = result.criterion.id
         if name in search.results and not search.results[name].is_lost:
-            edited = _entries_of(search.edits_needed_for(name), entries)
+            edited = _list_entries(search.edits_needed_for(name), entries)
             if edited:
                 text = f"Fixed with {enumerated(edited, MAX_IN_HINT)}."
                 at = result.outcome.location or Location("", 1, 1)
@@ -143,7 +143,7 @@ def _hints_of_others(
     return hints
 
 
-def _entries_of(hints_edits: Iterable[Edits], entries: Mapping[Edits, str]) -> tuple[str, ...]:
+def _list_entries(hints_edits: Iterable[Edits], entries: Mapping[Edits, str]) -> tuple[str, ...]:
     """Return the criteria that show the hints with these edits, each once."""
     return tuple(dict.fromkeys(entries[edits] for edits in hints_edits if edits in entries))
 

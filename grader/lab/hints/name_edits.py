@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.problems import Fix
 from grader.base.source import Source
-from grader.lab.checks.parameters import measured, value_of
+from grader.lab.checks.parameters import find_value, measured
 from grader.lab.hints.edits import Proposal
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
@@ -64,7 +64,7 @@ def _spelling(
         texts += [link.name for link in known.robot.links]
         texts += [joint.name for joint in known.robot.joints]
     packages = reference.packages.values() if reference is not None else ()
-    texts_of_reference = [source.text for source in name_fixes.sources_of(packages)]
+    texts_of_reference = [source.text for source in name_fixes.read_sources(packages)]
     # A part of a path is a name of its own, a part of a topic is none.
     if family in ("files", "programs"):
         pattern = r"(?<![\w-]){}(?![\w-])"
@@ -130,7 +130,7 @@ def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterat
     """
     name, meant = wanted["parameter"], wanted.get("value")
     try:
-        given = value_of(submission, wanted["node"], name)
+        given = find_value(submission, wanted["node"], name)
         if "measure" in wanted:
             meant = round(measured(submission, wanted["measure"], wanted.get("links", [])), 6)
     except (MissingElement, NotDecided):

@@ -399,17 +399,17 @@ def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
 def _indents_around(lines: Sequence[str], row: int) -> list[str]:
     """Return the indentations of the lines around one, the nearest first, and a deeper one."""
     around = [*lines[max(row - _MAX_AROUND, 0) : row], *lines[row + 1 : row + 2]]
-    known = dict.fromkeys(_indent_of(line) for line in reversed(around) if line.strip())
+    known = dict.fromkeys(_read_indent(line) for line in reversed(around) if line.strip())
     deeper = f"{next(iter(known), '')}    "
     return [*dict.fromkeys((*known, deeper))]
 
 
 def _indented_line(file: PythonFile, number: int, indent: str) -> Edit:
     start = file.source.offset(number, 1)
-    return file.source.edit(start, start + len(_indent_of(file.source.line(number))), indent)
+    return file.source.edit(start, start + len(_read_indent(file.source.line(number))), indent)
 
 
-def _indent_of(line: str) -> str:
+def _read_indent(line: str) -> str:
     return line[: len(line) - len(line.lstrip())]
 
 
@@ -623,11 +623,11 @@ def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Iterator[
     for item in _items(file):
         known |= _codes_of_entry(file, item)
     for call in file.calls("Node"):
-        known |= _package_of(file, call)
+        known |= _find_package(file, call)
     missing = [
         like.written(item, file.bound)
         for item in _items(like)
-        if known.isdisjoint(_codes_of_entry(like, item) | _package_of(like, item))
+        if known.isdisjoint(_codes_of_entry(like, item) | _find_package(like, item))
     ]
     for codes_to_add in (unused, missing):
         for code in codes_to_add:
@@ -657,7 +657,7 @@ def _codes_of_entry(file: PythonFile, item: ast.expr) -> set[str]:
     return codes
 
 
-def _package_of(file: PythonFile, code: ast.expr) -> set[str]:
+def _find_package(file: PythonFile, code: ast.expr) -> set[str]:
     """Return the package of the program that a node starts, if it names one."""
     given = argument(code, "package") if isinstance(code, ast.Call) else None
     if given is not None:

@@ -47,7 +47,7 @@ class PackageTask:
         """
         if package is None or kind not in ("launch", "rviz"):
             return kind
-        name = min((name for name in self.given if _kind_of(name) == kind), default="")
+        name = min((name for name in self.given if _classify_file(name) == kind), default="")
         launch = next((package.launch(path) for path in package.launch_files[:1]), None)
         if kind == "launch":
             return package.launch_file(name)
@@ -88,7 +88,7 @@ class PackageTask:
         return self.package.tree.files
 
 
-def _kind_of(path: str) -> str:
+def _classify_file(path: str) -> str:
     """Return the kind of a file.
 
     This is launch, rviz, urdf, setup.py with the files that it needs, or another file itself.
@@ -124,12 +124,13 @@ def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
     names = {posixpath.basename(path) for path in wanted} | task.given
     for path in dict.fromkeys(wanted):
         folder, name = posixpath.split(path)
-        if _kind_of(path) != kind or any(_is_named(file, name, kind) for file in task.files):
+        if _classify_file(path) != kind or any(_is_named(file, name, kind) for file in task.files):
             continue
         same_kind = [
             file
             for file in task.files
-            if kind in (_kind_of(file), posixpath.dirname(file)) or file.startswith(f"{folder}/")
+            if kind in (_classify_file(file), posixpath.dirname(file))
+            or file.startswith(f"{folder}/")
         ]
         yield from _rename(
             task, kind, name, [file for file in same_kind if posixpath.basename(file) not in names]

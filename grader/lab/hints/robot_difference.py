@@ -13,8 +13,8 @@ from grader.base.names import near
 from grader.base.source import Edits
 from grader.base.text import enumerated, quoted
 from grader.lab.hints.edits import MAX_IN_HINT
-from grader.lab.hints.robot_draft import Draft, Set, child_of, end_of
-from grader.lab.hints.robot_numbers import mistake_in, values_of
+from grader.lab.hints.robot_draft import Draft, Set, find_child, read_end
+from grader.lab.hints.robot_numbers import mistake_in, read_values
 from grader.lab.hints.tree_difference import Node, Step, paired, steps
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import CHILDREN, TAGS
@@ -95,7 +95,11 @@ class RobotDifference:
                 if like.tag == "link":
                     parts.append(MissingPart("link", like.get("name") or ""))
                 elif like.tag == "joint":
-                    ends = (end_of(like, "child"), like.get("type") or "", end_of(like, "parent"))
+                    ends = (
+                        read_end(like, "child"),
+                        like.get("type") or "",
+                        read_end(like, "parent"),
+                    )
                     parts.append(MissingPart("joint", *ends))
         return parts
 
@@ -120,7 +124,7 @@ class RobotDifference:
         """
         cause = cause.replace("{}", self.draft.describe(element, tag, self.known))
         around = element if element.getparent() is self.draft.root else element.getparent()
-        return Piece(cause, link or self.draft.link_of(element), sets, edits, rank, around)
+        return Piece(cause, link or self.draft.find_link(element), sets, edits, rank, around)
 
     def piece_of_sets(self, sets: Sequence[Set], rank: int = REFERENCE) -> Piece:
         """Return the piece that sets values of one element, named by what is wrong with them."""
@@ -154,13 +158,13 @@ class RobotDifference:
             yield from self._material(used, own_materials)
 
     def _material(self, used: Element, own_names: Collection[str]) -> Iterator[Piece]:
-        link = self.reference.link(self.draft.link_of(used))
+        link = self.reference.link(self.draft.find_link(used))
         shown = next(link.iter("material"), None) if link is not None else None
         if shown is None:
             return
         name = shown.get("name", "")
         like = self.reference.material(name)
-        colour = child_of(like, "color") if like is not None else None
+        colour = find_child(like, "color") if like is not None else None
         if like is None or colour is None:
             return
         if used.get("name", "") not in own_names:
@@ -191,7 +195,7 @@ class RobotDifference:
 
     def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
-        nodes = [_node_of(child, names) for child in children[: 3 * _MAX_LINKS]]
+        nodes = [_make_node(child, names) for child in children[: 3 * _MAX_LINKS]]
         values: dict[str, str] = {}
         if draft is self.reference and self.draft.root.get("name") is None:
             values["name"] = draft.root.get("name") or ""
@@ -244,7 +248,7 @@ class RobotDifference:
         name = element.get("link") or ""
         if element.tag != "parent" or name in self.known or self.draft.link(name) is None:
             return False
-        return self.draft.joint_of(name) is None
+        return self.draft.find_joint(name) is None
 
     def _rename(self, element: Element, name: str) -> Iterator[Piece]:
         """Rename an element.
@@ -295,7 +299,7 @@ class RobotDifference:
         """
         tag = str(element.tag)
         if tag in ("origin", "axis"):  # one with default values only does not count
-            inner = child_of(parent, tag)
+            inner = find_child(parent, tag)
             sets = []
             for key, text in element.attrib.items():
                 name, wanted = str(key), normal(tag, str(key), str(text))
@@ -336,7 +340,7 @@ def _identities(element: Element) -> list[tuple[str, str, str]]:
 
     This is its name, and the link that it moves.
     """
-    texts = (("name", element.get("name") or ""), ("child", end_of(element, "child")))
+    texts = (("name", element.get("name") or ""), ("child", read_end(element, "child")))
     return [(str(element.tag), what, text) for what, text in texts if text]
 
 
@@ -358,8 +362,8 @@ def _cause(sets: Sequence[Set]) -> str:
         if known is None or not known.parts:
             return what
         parts += [part or one.attribute for part in known.parts]
-        old += values_of(known.default if text is None else text)
-        new += values_of(one.value)
+        old += read_values(known.default if text is None else text)
+        new += read_values(one.value)
     unit = TAGS[tag].attributes[sets[-1].attribute].unit
     return mistake_in(parts, unit, tuple(old), tuple(new))
 
@@ -381,7 +385,7 @@ def normal(tag: str, attribute: str, text: str | None) -> str:
     if text is None:
         text = known.default or "" if known is not None else ""
     is_read = known is not None and known.parts and (len(known.parts) > 1 or text == text.rstrip())
-    values = values_of(text) if is_read else ()
+    values = read_values(text) if is_read else ()
     if values:
         return " ".join(f"{value + 0.0:.6g}" for value in values)
     return text
@@ -398,7 +402,7 @@ def _wanted_value(step: Step) -> str | None:
     return known.default or None if known is not None else None
 
 
-def _node_of(element: Element, names: Mapping[str, Mapping[str, str]]) -> Node:
+def _make_node(element: Element, names: Mapping[str, Mapping[str, str]]) -> Node:
     """Return the node of an element, without values and elements that are the default."""
     tag = str(element.tag)
     attributes = TAGS[tag].attributes if tag in TAGS else {}
@@ -417,7 +421,7 @@ def _node_of(element: Element, names: Mapping[str, Mapping[str, str]]) -> Node:
     children = []
     for child in element:
         if isinstance(child.tag, str):
-            node = _node_of(child, names)
+            node = _make_node(child, names)
             if not _is_default(node, is_moving=is_moving):
                 children.append(node)
     return Node(tag, _keys(element, values), values, children, element)
@@ -426,8 +430,8 @@ def _node_of(element: Element, names: Mapping[str, Mapping[str, str]]) -> Node:
 def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
     name = values.get("name", "") or values.get("reference", "")
     is_joint = element.tag == "joint" and element.getparent() is not None
-    if is_joint and child_of(element, "child") is not None:
-        return end_of(element, "child"), name
+    if is_joint and find_child(element, "child") is not None:
+        return read_end(element, "child"), name
     if name and element.tag not in ("visual", "collision"):
         return (name,)
     return ()
@@ -445,12 +449,12 @@ def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
     known = {joint.name for joint in reference.robot.joints}
     written = {joint.get("name") for joint in draft.joints()}
     for joint in reference.joints():
-        own_joint = draft.joint_of(end_of(joint, "child"))
+        own_joint = draft.find_joint(read_end(joint, "child"))
         own_name = own_joint.get("name") if own_joint is not None else None
         if own_name and own_name not in known and joint.get("name") not in written:
             joints[joint.get("name") or ""] = own_name
-    own_materials = [_node_of(material, {}) for material in draft.root.iterchildren("material")]
-    materials = [_node_of(material, {}) for material in reference.root.iterchildren("material")]
+    own_materials = [_make_node(material, {}) for material in draft.root.iterchildren("material")]
+    materials = [_make_node(material, {}) for material in reference.root.iterchildren("material")]
     called: dict[str, str] = {}
     for node, like in paired(own_materials, materials).both:
         called[like.values.get("name", "")] = node.values.get("name", "")
@@ -481,7 +485,7 @@ def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
     if len(links) != 1:
         return ()
     ends = [
-        (joint, role) for joint in draft.joints() for role in _ENDS if end_of(joint, role) == old
+        (joint, role) for joint in draft.joints() for role in _ENDS if read_end(joint, role) == old
     ]
     return (
         Set(links[0], "", "name", new),

@@ -21,7 +21,7 @@ from grader.base.element_edits import (
 )
 from grader.base.source import Edit, Edits, Source
 from grader.lab.hints.edits import Proposal
-from grader.lab.hints.robot_numbers import values_of
+from grader.lab.hints.robot_numbers import read_values
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Robot
 from grader.ros.urdf.reader import Reading
@@ -52,7 +52,7 @@ class Set(NamedTuple):
     def element(self) -> Element | None:
         """The element whose attribute it is; None where it is missing."""
         if self.tag:
-            return child_of(self.owner, self.tag)
+            return find_child(self.owner, self.tag)
         return self.owner
 
 
@@ -96,7 +96,7 @@ class Draft:
     def _links(self) -> dict[str, Element]:
         return {link.get("name") or "": link for link in reversed(list(self.links()))}
 
-    def joint_of(self, link: str) -> Element | None:
+    def find_joint(self, link: str) -> Element | None:
         """Return the parent joint of a link, also one whose parent does not exist."""
         joint = self._parents.get(link)
         if joint is not None and joint.location is not None:
@@ -105,7 +105,7 @@ class Draft:
 
     @cached_property
     def _joints(self) -> dict[str, Element]:
-        return {end_of(joint, "child"): joint for joint in reversed(list(self.joints()))}
+        return {read_end(joint, "child"): joint for joint in reversed(list(self.joints()))}
 
     def material(self, name: str) -> Element | None:
         """Return the first definition of a material that counts.
@@ -135,14 +135,14 @@ class Draft:
             element = parent
         return element
 
-    def link_of(self, element: Element) -> str:
+    def find_link(self, element: Element) -> str:
         """Return the link that an element belongs to: of a joint its child.
 
         Empty for a material.
         """
         owner = self.owner(element)
         if owner.tag == "joint":
-            return end_of(owner, "child")
+            return read_end(owner, "child")
         if owner.tag == "link":
             return owner.get("name") or ""
         return ""
@@ -161,7 +161,7 @@ class Draft:
         path = [name for name in path[:-1] if name != "geometry"] + path[-1:]
         if owner.tag != "link" or not path:
             path.insert(0, str(owner.tag))
-        name = self.link_of(owner) if owner.tag in ("link", "joint") else owner.get("name") or ""
+        name = self.find_link(owner) if owner.tag in ("link", "joint") else owner.get("name") or ""
         what = path[0] if len(path) == 1 else f"{path[0]} {path[-1]}"
         if name not in known:
             own_name = owner.get("name") if what == "joint" else None
@@ -230,7 +230,7 @@ class Draft:
         for change in sets:
             if change.element is not None:
                 siblings = self._expanded.siblings(self._tags[change.element])
-                links.update(self.link_of(self._elements[tag]) for tag in siblings)
+                links.update(self.find_link(self._elements[tag]) for tag in siblings)
         return frozenset(links)
 
     def ways(self, sets: Collection[Set]) -> list[Edits]:
@@ -251,7 +251,7 @@ class Draft:
                 value = change.value
                 if PARTS.get(name):  # numbers
                     value = merged(element.get(name) or "", value)
-                ways_of_value = self._ways_of(element, name, value, siblings)
+                ways_of_value = self._list_ways(element, name, value, siblings)
                 ways = [(*before, *edits) for before in ways for edits in ways_of_value]
                 ways = ways[:_MAX_WAYS]
             else:
@@ -276,8 +276,11 @@ class Draft:
         if element is None or len(sets) != 2 or any(one.element is not element for one in sets):
             return ways
         first, second = sets
-        wanted = [values_of(element.get(second.attribute)), values_of(element.get(first.attribute))]
-        if not all(wanted) or [values_of(first.value), values_of(second.value)] != wanted:
+        wanted = [
+            read_values(element.get(second.attribute)),
+            read_values(element.get(first.attribute)),
+        ]
+        if not all(wanted) or [read_values(first.value), read_values(second.value)] != wanted:
             return ways
         source, start = self.source.element(self._tags[element])
         first_text = _attribute_text(source, start, first.attribute)
@@ -292,7 +295,7 @@ class Draft:
             return [*ways[:1], edits]
         return [edits]
 
-    def _ways_of(
+    def _list_ways(
         self, element: Element, attribute: str, value: str, others: Mapping[Element, str]
     ) -> list[Edits]:
         """Return the ways to give an attribute another text.
@@ -397,14 +400,14 @@ def _attribute_text(source: Source, start: int, name: str) -> str | None:
     return source.text[span.value_start : span.value_end]
 
 
-def end_of(joint: Element, role: str) -> str:
+def read_end(joint: Element, role: str) -> str:
     """Return the name of the link that is the parent or child of a joint."""
-    end_element = child_of(joint, role)
+    end_element = find_child(joint, role)
     if end_element is not None:
         return end_element.get("link") or ""
     return ""
 
 
-def child_of(element: Element, tag: str) -> Element | None:
+def find_child(element: Element, tag: str) -> Element | None:
     """Return the first child with this tag, which alone counts."""
     return next(element.iterchildren(tag), None)

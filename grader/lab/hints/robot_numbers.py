@@ -28,7 +28,7 @@ class _NumberMistake(NamedTuple):
     correct: Callable[[float], float]
     cause: str
 
-    def may_be_of(self, unit: str) -> bool:
+    def may_have_unit(self, unit: str) -> bool:
         """Return whether it is made with numbers of this unit."""
         return not self.units or unit in self.units
 
@@ -69,7 +69,7 @@ def mistake_in(parts: Sequence[str], unit: str, old: Values, new: Values) -> str
     else:
         wrong = "the numbers of {}"
     for mistake in _MISTAKES:
-        if off and mistake.may_be_of(unit):
+        if off and mistake.may_have_unit(unit):
             fits = (_is_same(mistake.correct(old[index]), new[index], 2e-3) for index in off)
             if all(fits):
                 return mistake.cause.replace("{}", wrong)
@@ -87,7 +87,7 @@ def plausible(unit: str, old: Values) -> Iterator[Values]:
     """
     largest = max(map(abs, old), default=0.0)
     for mistake in _MISTAKES:
-        if largest < mistake.least or not mistake.may_be_of(unit):
+        if largest < mistake.least or not mistake.may_have_unit(unit):
             continue
         # All numbers of a vector have the same unit.
         if mistake.least and len(old) > 1:
@@ -107,7 +107,7 @@ def _is_same(one: float, other: float, relative: float = 1e-9) -> bool:
     return isclose(one, other, rel_tol=relative, abs_tol=_SAME)
 
 
-def values_of(text: str | None) -> Values:
+def read_values(text: str | None) -> Values:
     """Return the numbers of an attribute; none where ROS 2 cannot read it."""
     if text is None:
         return ()

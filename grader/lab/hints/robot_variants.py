@@ -22,8 +22,8 @@ from grader.lab.hints.robot_difference import (
     RobotDifference,
     normal,
 )
-from grader.lab.hints.robot_draft import Draft, Set, child_of, end_of
-from grader.lab.hints.robot_numbers import LARGE, Values, plausible, values_of
+from grader.lab.hints.robot_draft import Draft, Set, find_child, read_end
+from grader.lab.hints.robot_numbers import LARGE, Values, plausible, read_values
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.shapes import UnknownShape
 from grader.ros.urdf.standing_robot import StandingRobot
@@ -63,7 +63,7 @@ _WITH_NUMBERS = (
 
 def _parts(draft: Draft, link: str) -> Iterator[tuple[str, Element]]:
     """Yield the elements with numbers of a link and its joint, each with its path."""
-    for owner in (draft.joint_of(link), draft.link(link)):
+    for owner in (draft.find_joint(link), draft.link(link)):
         if owner is None:
             continue
         for element in owner.iter(*_WITH_NUMBERS):
@@ -113,7 +113,7 @@ def _mirror_numbers(
     for name, attribute in TAGS[tag].attributes.items():
         text = other.get(name)
         text_of_reference = like.get(name) if like is not None else None
-        values = values_of(text)
+        values = read_values(text)
         if len(values) != len(attribute.parts):
             continue
         if normal(tag, name, text) == normal(tag, name, text_of_reference):
@@ -177,10 +177,10 @@ def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> 
     """
     unit = TAGS[str(element.tag)].attributes[name].unit
     least = 0.0 if unit == "m" and element.tag != "origin" else -inf  # of a size
-    written = values_of(element.get(name))
+    written = read_values(element.get(name))
     # A number like 1e400 has no values.
     definitions = [
-        number for number in difference.draft.numbers(element, name) if values_of(number.text)
+        number for number in difference.draft.numbers(element, name) if read_values(number.text)
     ]
     if not definitions:
         for values in plausible(unit, written):
@@ -200,7 +200,7 @@ def _meant_definitions(
     definition: "NumberDefinition", unit: str, least: float, coordinates: tuple[float, ...]
 ) -> Iterator[Edits]:
     """Yield the edits that give a number of xacro another value, above `least`."""
-    (old,) = values_of(definition.text)
+    (old,) = read_values(definition.text)
     for (new,) in plausible(unit, (old,)):
         if new > least and _may_be_meant(old, new, coordinates):
             edits = definition.edits_with(format_number(new))
@@ -215,7 +215,7 @@ def _exchanged_lengths(
     definitions: "Sequence[NumberDefinition]",
 ) -> Iterator[Piece]:
     """Yield the edits that exchange two of the lengths that an attribute is computed from."""
-    lengths = [number for number in definitions if abs(values_of(number.text)[0]) != 1.0]
+    lengths = [number for number in definitions if abs(read_values(number.text)[0]) != 1.0]
     cause = f"the numbers from which the {name} of {{}} is computed"
     for one, other in combinations(lengths, 2):
         edits: Edits = ()
@@ -241,7 +241,7 @@ def reversed_joints(difference: RobotDifference) -> list[Element]:
     """
     parents: dict[str, str] = {}
     for joint in difference.reference.joints():
-        parents[end_of(joint, "child")] = end_of(joint, "parent")
+        parents[read_end(joint, "child")] = read_end(joint, "parent")
 
     def links_above(link: str) -> set[str]:
         above: set[str] = set()
@@ -252,7 +252,7 @@ def reversed_joints(difference: RobotDifference) -> list[Element]:
     return [
         joint
         for joint in difference.draft.joints()
-        if end_of(joint, "child") in links_above(end_of(joint, "parent"))
+        if read_end(joint, "child") in links_above(read_end(joint, "parent"))
     ]
 
 
@@ -270,7 +270,7 @@ def exchanges(difference: RobotDifference) -> list[Piece]:
         cause = "parents and children of joints are exchanged"
         pieces.append(pieces[0]._replace(cause=cause, edits=tuple(every_edit)))
     for joint in difference.draft.joints():
-        other = difference.draft.joint_of(_other_side(end_of(joint, "child")))
+        other = difference.draft.find_joint(_other_side(read_end(joint, "child")))
         if other is not None and other is not joint:
             edits = _exchange_ends(difference.draft, (joint, "child"), (other, "child"))
             cause = "the children of two joints are exchanged"
@@ -279,7 +279,7 @@ def exchanges(difference: RobotDifference) -> list[Piece]:
 
 
 def _exchange_ends(draft: Draft, *ends: tuple[Element, str]) -> Edits:
-    elements = [child_of(joint, role) for joint, role in ends]
+    elements = [find_child(joint, role) for joint, role in ends]
     return draft.exchange(
         *[element for element in elements if element is not None], attribute="link"
     )
@@ -305,8 +305,8 @@ def leveled_supports(
         up = robot.pose(standing.base, relative_to=joint.parent).rotate(Z_AXIS)
     except (KeyError, MissingElement, NotDecided, UnknownShape):
         return
-    element = difference.draft.joint_of(link)
-    origin = child_of(element, "origin") if element is not None else None
+    element = difference.draft.find_joint(link)
+    origin = find_child(element, "origin") if element is not None else None
     if origin is None or joint.origin is None or not height:
         return
     moved = [old - height * part for old, part in zip(joint.origin.xyz, up, strict=True)]
@@ -319,7 +319,7 @@ def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
 
     For a robot of which they are all in centimetres or millimetres.
     """
-    lengths = [*_lengths_of(difference.draft)]
+    lengths = [*_list_lengths(difference.draft)]
     if not any(element.tag != "origin" and max(values) >= LARGE for element, _, values in lengths):
         return
     for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")):
@@ -330,13 +330,13 @@ def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
         yield Piece(f"the unit of all lengths: {unit}, not metres", "", tuple(sets), (), OWN)
 
 
-def _lengths_of(draft: Draft) -> Iterator[tuple[Element, str, Values]]:
+def _list_lengths(draft: Draft) -> Iterator[tuple[Element, str, Values]]:
     """Yield the attributes of a robot that are lengths, with their numbers, if one is not 0."""
     for element in draft.root.iter():
         if element.tag not in TAGS:
             continue
         for name, attribute in TAGS[str(element.tag)].attributes.items():
-            values = values_of(element.get(name)) if attribute.unit == "m" else ()
+            values = read_values(element.get(name)) if attribute.unit == "m" else ()
             if any(values):
                 yield element, name, values
 
@@ -357,7 +357,9 @@ def whole_links(difference: RobotDifference) -> Iterator[Piece]:
         if link not in difference.known:
             continue
         poses = [change for change in sets if _is_pose(change)]
-        carried = {joint for joint in difference.draft.joints() if end_of(joint, "parent") == link}
+        carried = {
+            joint for joint in difference.draft.joints() if read_end(joint, "parent") == link
+        }
         after = [
             change
             for change in every_set

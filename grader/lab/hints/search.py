@@ -26,7 +26,7 @@ from grader.lab.grading.report import Meant, Report, Result
 from grader.lab.hints.edits import FoundHint, Proposal
 from grader.lab.hints.generators import STAGES, Situation, Stage, leaves_others, missing_hints
 from grader.lab.hints.robot_difference import REFERENCE, STRUCTURE
-from grader.lab.hints.robot_draft import Draft, end_of
+from grader.lab.hints.robot_draft import Draft, read_end
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.edited import content, edited_files, with_files, with_urdf
 from grader.lab.submission.submission import Submission
@@ -197,7 +197,7 @@ def _repeated(urdf: Read) -> set[tuple[str, str]]:
     if draft is None:
         return set()
     names = Counter(("link", link.get("name") or "") for link in draft.links())
-    names.update(("joint", end_of(joint, "child")) for joint in draft.joints())
+    names.update(("joint", read_end(joint, "child")) for joint in draft.joints())
     return {key for key, count in names.items() if count > 1}
 
 
@@ -223,7 +223,7 @@ def is_worse(before: Result, after: Result) -> bool:
     return after.points < before.points
 
 
-def costs_of(results: _Results) -> dict[str, Decimal]:
+def sum_costs(results: _Results) -> dict[str, Decimal]:
     """Return what each failed criterion costs, with the criteria that are skipped because of it."""
     lost: dict[str, Decimal] = {}
     for name, result in results.items():
@@ -235,7 +235,7 @@ def costs_of(results: _Results) -> dict[str, Decimal]:
     }
 
 
-def gains_of(before: _Results, after: _Results) -> dict[str, Decimal]:
+def list_gains(before: _Results, after: _Results) -> dict[str, Decimal]:
     """Return the criteria that pass now and did not before, with the points that this gives."""
     return {
         name: result.points - before[name].points
@@ -383,7 +383,7 @@ class HintSearch:
         with self.trials.isolated():
             explained = {name for hint in self.found for name in hint.gains}
             explained |= self.missing.keys()
-            lost = costs_of(self.trials.results)
+            lost = sum_costs(self.trials.results)
             for name in explained:
                 lost.pop(name, None)
             after = self._situation_after(self.edits)
@@ -508,7 +508,7 @@ class HintSearch:
     def _prove(self, best: _Tried, tried: Iterable[_Tried]) -> bool:
         """Add the hint of a proposal if it is proven, and return whether it was added."""
         wanted = best.passes & {*self._lost}
-        proof = self._proof_of(best.proposal, wanted)
+        proof = self._find_proof(best.proposal, wanted)
         if proof is None or self._is_half(best, proof.results):
             return False
         best = best._replace(proposal=proof.proposal)
@@ -545,7 +545,7 @@ class HintSearch:
             criterion.points,
         )
 
-    def _proof_of(self, proposal: Proposal, wanted: frozenset[str]) -> _Proof | None:
+    def _find_proof(self, proposal: Proposal, wanted: frozenset[str]) -> _Proof | None:
         """Return what edits gain alone, or else after the edits before them.
 
         None if they lose anything.
@@ -652,4 +652,4 @@ class HintSearch:
         Nothing where a criterion is worse with them.
         """
         after = self.trials.graded((*before, *edits), against)
-        return gains_of(against, after), after
+        return list_gains(against, after), after

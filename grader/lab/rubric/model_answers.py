@@ -11,7 +11,7 @@ from typing import Any
 from grader.base.errors import RubricError
 from grader.base.names import did_you_mean
 from grader.base.text import printable_path
-from grader.base.toml_file import TomlPath, complain_of, read_toml
+from grader.base.toml_file import TomlPath, raise_complaints, read_toml
 from grader.files.reading import read_capped
 from grader.lab.checks.manual import answered
 from grader.lab.rubric.rubric import Rubric, find_rubric, read_rubric
@@ -32,7 +32,7 @@ def load_with_answers(name: str, file: Path | None = None) -> Rubric:
     own_answers = _answers_file(rubric)
     if not own_answers.resolve().is_relative_to(path.parent.resolve()):
         message = f"the answers file {printable_path(own_answers)} must be in the rubric's folder"
-        raise RubricError((f"{rubric.place_of(('answers',))}: {message}",))
+        raise RubricError((f"{rubric.find_place(('answers',))}: {message}",))
     return _read_answers(rubric, own_answers)
 
 
@@ -45,7 +45,7 @@ def _read_answers(rubric: Rubric, file: Path) -> Rubric:
     if data == rubric.data:
         return rubric
     text, table = read_toml(data, file)
-    complain_of(_find_complaints(rubric, table), text, file)
+    raise_complaints(_find_complaints(rubric, table), text, file)
     return _with_answers(rubric, table)
 
 
@@ -54,7 +54,7 @@ def missing_answers(rubric: Rubric) -> str:
     file = _answers_file(rubric)
     if not rubric.answers or file.exists():
         return ""
-    place = rubric.place_of(("answers",))
+    place = rubric.find_place(("answers",))
     return (
         f"{place}: the answers file {printable_path(file)} does not exist, so no model answers "
         "are shown"

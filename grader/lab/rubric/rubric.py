@@ -18,13 +18,13 @@ from grader.base.text import printable_path, shell_quoted, texts_in
 from grader.base.toml_file import (
     TomlPath,
     TomlRow,
-    complain_of,
+    find_line,
     key_lines,
-    line_of,
+    raise_complaints,
     read_toml,
 )
 from grader.files.limits import ARCHIVES, ROBOT_ENDINGS
-from grader.files.reading import read_capped, sha256_of, shipped_folder
+from grader.files.reading import hash_bytes, read_capped, shipped_folder
 from grader.lab.checks.check import LINK_ARGUMENTS
 from grader.lab.checks.manual import answered
 from grader.lab.rubric.criterion import (
@@ -170,7 +170,7 @@ class Rubric:
     @cached_property
     def sha256(self) -> str:
         """The hash of the file's bytes."""
-        return sha256_of(self.data)
+        return hash_bytes(self.data)
 
     @cached_property
     def points(self) -> Decimal:
@@ -193,13 +193,13 @@ class Rubric:
         """The command that shows its parts and criteria."""
         return f"grader rubric show {self.id if self.is_shipped else shell_quoted(self.path)}"
 
-    def line_of(self, path: TomlPath) -> int:
+    def find_line(self, path: TomlPath) -> int:
         """Return the line of a key in the file, or of the innermost table around it."""
         return _line_in(self.data, self.path, path)
 
-    def place_of(self, path: TomlPath) -> str:
+    def find_place(self, path: TomlPath) -> str:
         """Return the file and the line of a key: my_lab.toml:12."""
-        return f"{printable_path(self.path)}:{self.line_of(path)}"
+        return f"{printable_path(self.path)}:{self.find_line(path)}"
 
     def part(self, name: str) -> Part:
         """Return the part with this id; raise InputError, which lists the parts."""
@@ -217,11 +217,11 @@ class Rubric:
 
 
 def _line_in(data: bytes, file: Path, path: TomlPath) -> int:
-    return line_of(_lines_of(data, file), path)
+    return find_line(_list_lines(data, file), path)
 
 
 @lru_cache(maxsize=1)
-def _lines_of(data: bytes, file: Path) -> dict[TomlPath, int]:
+def _list_lines(data: bytes, file: Path) -> dict[TomlPath, int]:
     return key_lines(read_toml(data, file)[0])
 
 
@@ -337,7 +337,7 @@ def _validate(data: bytes, path: Path) -> Validation:
     """Return the valid content of a file, which a command may need with and without answers."""
     text, table = read_toml(data, path)
     valid = Validation(table)
-    complain_of(valid.complaints, text, path)
+    raise_complaints(valid.complaints, text, path)
     return valid
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 DEFAULT_RUBRIC = "lab6"  # of the command line
 
 
-def files_of(name: str, answers: Path | None = None) -> list[Path]:
+def list_files(name: str, answers: Path | None = None) -> list[Path]:
     """Return the files and folders that a rubric is read from.
 
     Its own file, its model answers, its reference.

@@ -87,7 +87,7 @@ def open_submission(
                     lambda inside: os.path.realpath(place / inside) not in opening.reports
                 )
             refuse_empty(tree, printable_path(place), first_step(tree, place, lab.package))
-            return submission_of(tree, identity, lab, opening)
+            return make_submission(tree, identity, lab, opening)
     opened = open_file(
         path, opening.max_size, _alone(lab, opening), with_neighbours=with_neighbours
     )
@@ -139,7 +139,7 @@ def _is_lab(lab: Lab, name: str) -> bool:
     return LabFolders(lab.folders).is_lab(name)
 
 
-def submission_of(
+def make_submission(
     tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAULTS, *, shown: str = ""
 ) -> Submission:
     """Return the submission that a file tree makes.
@@ -183,5 +183,5 @@ def submission_of(
         other_lab=chosen.other_lab,
         opening=opening,
         budget=budget,
-        reopen=partial(submission_of, identity=identity, lab=lab, opening=opening),
+        reopen=partial(make_submission, identity=identity, lab=lab, opening=opening),
     )

@@ -29,7 +29,7 @@ from grader.ros.package.finding import (
 )
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import OtherCandidate, Read, Surroundings, read_as_ros
-from grader.ros.package.robots import RobotFile, find_robots, parts_of
+from grader.ros.package.robots import RobotFile, find_robots, list_parts
 from grader.ros.python.budget import READING, Budget
 
 _MAX_ELSEWHERE = 40
@@ -196,7 +196,7 @@ class _SearchedPlaces(NamedTuple):
     labs: LabFolders
     other_lab: str
 
-    def place_of(self, path: str) -> Belonging | None:
+    def find_place(self, path: str) -> Belonging | None:
         """Return where a file is; None of one in the folder of another lab that is not searched."""
         place = self.labs.belonging(path)
         if place is not Belonging.OTHER_LAB:
@@ -205,29 +205,29 @@ class _SearchedPlaces(NamedTuple):
             return place
         return None
 
-    def best_of(self, paths: Iterable[str]) -> Belonging | None:
+    def find_best(self, paths: Iterable[str]) -> Belonging | None:
         """Return the best place of files; None if all are in folders that are not searched."""
-        places = map(self.place_of, paths)
+        places = map(self.find_place, paths)
         return min((place for place in places if place is not None), default=None)
 
     def only(self, tree: Tree, places: Collection[Belonging]) -> Tree:
         """Return the files that are in these places."""
-        return _part_of(tree, lambda path: self.place_of(path) in places)
+        return _select_part(tree, lambda path: self.find_place(path) in places)
 
     def own(self, tree: Tree) -> Tree:
         """Return the files in the folders of this lab, and those beside its archives.
 
         Documents may be there.
         """
-        return _part_of(
+        return _select_part(
             tree,
             lambda path: (
-                self.place_of(path) is Belonging.THIS_LAB or self.labs.is_beside_archive(path)
+                self.find_place(path) is Belonging.THIS_LAB or self.labs.is_beside_archive(path)
             ),
         )
 
 
-def _part_of(tree: Tree, belongs: Callable[[str], bool]) -> Tree:
+def _select_part(tree: Tree, belongs: Callable[[str], bool]) -> Tree:
     if all(map(belongs, (*tree.files, *tree.generated))):
         return tree
     return tree.only(belongs)
@@ -261,7 +261,7 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     own_tree = places.own(tree) if has_own_folder else searched_tree
 
     # The packages are those of the best place that has any: all others are elsewhere.
-    package_place = places.best_of(package_files)
+    package_place = places.find_best(package_files)
     packages: tuple[Package, ...] = ()
     files_elsewhere = package_files
     if package_place is not None:
@@ -269,7 +269,7 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
         is_whole = package_tree is tree
         packages = every_package if is_whole else _packages_in(package_tree, lab)
         files_elsewhere = [
-            path for path in package_files if places.place_of(path) is not package_place
+            path for path in package_files if places.find_place(path) is not package_place
         ]
     packages_elsewhere = every_package if files_elsewhere else ()
     return _Selection(
@@ -442,14 +442,14 @@ class UrdfSearch(NamedTuple):
 
     def _candidates(self, robots: Sequence[RobotFile]) -> Iterator[_Candidate]:
         labs, lab = self.labs, self.lab
-        tiers = {robot.path: _tier_of(robot, lab.urdf) for robot in robots}
+        tiers = {robot.path: _rank_robot(robot, lab.urdf) for robot in robots}
         # What is read first is what may be graded: there may be more than can be read.
         in_order = sorted(
             robots, key=lambda robot: (labs.belonging(robot.path), tiers[robot.path], robot.path)
         )
         readings = self._readings(in_order)
         launched = launched_paths(self.tree, self.packages, robots)
-        included = parts_of(robots)
+        included = list_parts(robots)
         for robot in robots:
             yield self._candidate(
                 robot,
@@ -553,7 +553,7 @@ def _may_be_meant(best: _Candidate, other: _Candidate, lab: Lab) -> bool:
     return bool(lab.links) or other.tier[0] <= max(best.tier[0], _Tier.SAME_ROBOT)
 
 
-def _tier_of(robot: RobotFile, urdf: str) -> _Tier:
+def _rank_robot(robot: RobotFile, urdf: str) -> _Tier:
     steps = [step for step in urdf.split("/") if step not in ("", ".")]
     stem = steps[-1].split(".")[0]
     if robot.path.split("/")[-len(steps) :] == steps:

@@ -9,7 +9,7 @@ from grader.base.errors import MissingElement, NotDecided
 from grader.base.reuse import Memory
 from grader.base.text import enumerated, was_not_committed
 from grader.files.limits import MAX_FILE_SIZE, ROBOT_ENDINGS
-from grader.files.reading import URDF_LIMIT, sha256_of
+from grader.files.reading import URDF_LIMIT, hash_bytes
 from grader.files.tree import File, Tree, make_tree
 from grader.ros.known.releases import Release
 from grader.ros.package.package import NO_PACKAGE, Package
@@ -168,7 +168,7 @@ class Submission(OpenedWorkspace):
     def meshes(self) -> "MeshLoader | None":
         """What loads the meshes of the robot that is graded, for pictures; None without a robot."""
         if isinstance(self.urdf, Read):
-            return self.meshes_of(self.urdf)
+            return self.load_meshes(self.urdf)
         return None
 
     @cached_property
@@ -177,16 +177,16 @@ class Submission(OpenedWorkspace):
 
         Of a URDF on its own that includes others, of a list of the hashes of all.
         """
-        own_hash = sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None
+        own_hash = hash_bytes(self.urdf.data) if isinstance(self.urdf, Read) else None
         if own_hash is None or not self.besides:
             return own_hash
         hashes = [
-            sha256_of(self.whole_tree.files[path].read(MAX_FILE_SIZE)) for path in self.besides
+            hash_bytes(self.whole_tree.files[path].read(MAX_FILE_SIZE)) for path in self.besides
         ]
         lines = [
             f"{file_hash} {path}\n" for file_hash, path in zip(hashes, self.besides, strict=True)
         ]
-        return sha256_of("".join([f"{own_hash}\n", *lines]).encode())
+        return hash_bytes("".join([f"{own_hash}\n", *lines]).encode())
 
     @property
     def cost(self) -> int:

@@ -11,14 +11,14 @@ from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric
 from grader.report.content import failures
-from grader.report.criteria import points_of
-from grader.report.drawing.picture import Body, Callout, Picture, Scene, scene_of
+from grader.report.criteria import write_points
+from grader.report.drawing.picture import Body, Callout, Picture, Scene, make_scene
 from grader.ros.api import Configuration
 
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 
 
-def picture_of(report: Report) -> Picture | None:
+def draw_report(report: Report) -> Picture | None:
     """Return the picture of a graded robot.
 
     None if there is no robot, or if it can no longer be read.
@@ -31,10 +31,10 @@ def picture_of(report: Report) -> Picture | None:
     if frame is None:
         return None
     wheels = [*dict.fromkeys(_wheels(report.rubric, robot))]
-    scene = scene_of(robot, frame, wheels, report.submission.meshes)
+    scene = make_scene(robot, frame, wheels, report.submission.meshes)
     reference = None
     if solution is not None and reference_frame:
-        reference = scene_of(solution, reference_frame, wheels)
+        reference = make_scene(solution, reference_frame, wheels)
     lost = [entry.result for entry in failures(report) if _is_marked(entry.result)]
     by_link = _by_link(lost, robot, solution)
     callouts = []
@@ -43,7 +43,7 @@ def picture_of(report: Report) -> Picture | None:
         if point is None and reference is not None:
             point = reference.centre(link)
         names = tuple(result.criterion.id for result in results)
-        callouts.append(Callout(number, link, point, names, points_of(results)))
+        callouts.append(Callout(number, link, point, names, write_points(results)))
     driving = _find_driving(report.rubric, robot, wheels)
     if reference is None:
         return Picture(scene, (), (), tuple(callouts), driving)

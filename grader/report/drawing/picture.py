@@ -24,7 +24,7 @@ from grader.ros.api import (
     Sphere,
     UnknownShape,
     Visual,
-    travel_of,
+    find_travel,
     turning_joint,
 )
 
@@ -107,7 +107,7 @@ class Scene:
         `frame` itself if it is on or below a loop of joints.
         """
         with suppress(MissingElement):
-            return self.robot.root_of(self.frame)
+            return self.robot.find_root(self.frame)
         return self.frame
 
     @property
@@ -116,7 +116,7 @@ class Scene:
         return self.poses.get(self.root)
 
 
-def scene_of(
+def make_scene(
     robot: Configuration,
     frame: str,
     wheels: Collection[str] = (),
@@ -252,7 +252,7 @@ def _wheel(scene: Scene, link: str) -> Wheel | None:
     centre = scene.centre(link)
     with suppress(*_NOT_KNOWN):
         joint = turning_joint(scene.robot, link, scene.frame)
-        travel, _ = travel_of(scene.robot, link, joint, scene.frame, Z_AXIS)
+        travel, _ = find_travel(scene.robot, link, joint, scene.frame, Z_AXIS)
         if centre is not None and travel is not None:
             return Wheel(centre, travel)
         return None
@@ -300,5 +300,5 @@ def plain_picture(
     None without either. `wheels` are the links that drive it, if they are known.
     """
     if robot is not None and frame is not None:
-        return Picture(scene_of(robot, frame, meshes=meshes), (), (), (), {"wheels": wheels})
+        return Picture(make_scene(robot, frame, meshes=meshes), (), (), (), {"wheels": wheels})
     return None

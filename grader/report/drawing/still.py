@@ -17,7 +17,7 @@ from grader.report.drawing.views import (
     TITLE,
     Panel,
     hull,
-    points_of,
+    outline_body,
 )
 from grader.ros.api import Box, Capsule, Cylinder, Sphere
 
@@ -33,14 +33,14 @@ _LIGHT = (0.36, -0.48, 0.8)
 _EDGE_ON = 0.02  # of the length of the normal of a face
 
 
-def still_of(scene: Scene) -> Still:
+def draw_still(scene: Scene) -> Still:
     """Return the picture of a robot, from the back to the front; empty without shapes."""
     if not scene.bodies:
         return ()
-    panel = _panel_of(scene)
+    panel = _make_panel(scene)
     left, shown = MAX_SIZE, dict[Body, list[tuple[str, str]]]()
-    for body in sorted(scene.bodies, key=lambda one: -np.ptp(points_of(one), axis=0).max()):
-        faces = [_face(body, panel, normal, points) for normal, points in _faces_of(body)]
+    for body in sorted(scene.bodies, key=lambda one: -np.ptp(outline_body(one), axis=0).max()):
+        faces = [_face(body, panel, normal, points) for normal, points in _list_faces(body)]
         size = sum(len(fill) + len(data) + 8 for fill, data in faces)
         if size <= left:
             left -= size
@@ -53,7 +53,7 @@ def _from_back_to_front(bodies: Iterable[Body]) -> Iterator[Body]:
     axes = np.array((_RIGHT, _UP))
     bounds: dict[Body, tuple[Any, ...]] = {}
     for body in bodies:
-        points = points_of(body)
+        points = outline_body(body)
         places, depths = points @ axes.T, points * np.sign(_NEAR)  # larger is nearer
         extents = [(values.min(axis=0), values.max(axis=0)) for values in (places, depths)]
         bounds[body] = (*extents[0], *extents[1])
@@ -77,10 +77,10 @@ def _hides(one: tuple[Any, ...], other: tuple[Any, ...]) -> bool:
     return bool((far - other_near).max() > (other_far - near).max())
 
 
-def _panel_of(scene: Scene) -> Panel:
+def _make_panel(scene: Scene) -> Panel:
     """Return the view in which a robot fills a picture."""
     axes = np.array((_RIGHT, _UP))
-    places = np.concatenate([points_of(body) for body in scene.bodies]) @ axes.T
+    places = np.concatenate([outline_body(body) for body in scene.bodies]) @ axes.T
     low, high = places.min(axis=0), places.max(axis=0)
     room = np.array((WIDTH, HEIGHT)) - 2.0 * _MARGIN
     scale = float((room / np.maximum(high - low, 1e-6)).min())
@@ -89,12 +89,12 @@ def _panel_of(scene: Scene) -> Panel:
     return Panel("", _RIGHT, _UP, _NEAR, *corner, 0.0, (float(x), float(y), float(z)), scale)
 
 
-def _faces_of(body: Body) -> Iterator[tuple[Vector, Any]]:
+def _list_faces(body: Body) -> Iterator[tuple[Vector, Any]]:
     """Yield the faces of a body that one sees: the normal of each, and points whose hull it is."""
     shape, pose = body.shape, body.T_frame_shape
     rotation = np.reshape(pose.rotation, (3, 3))
     if not isinstance(shape, Box):
-        yield _NEAR, points_of(body)
+        yield _NEAR, outline_body(body)
     for k, normal in enumerate(rotation.T):
         if isinstance(shape, Box):
             corners = CORNERS[CORNERS[:, k] > 0.0] * shape.size

@@ -22,9 +22,9 @@ from grader.report.drawing.views import (
     FreePlaces,
     Panel,
     Place,
-    frames_of,
     from_back_to_front,
-    panels_of,
+    list_frames,
+    make_panels,
 )
 
 _LEFT, _LINE = 14.0, 15.0  # pixels
@@ -88,7 +88,7 @@ def drawing_element(
 
     Screen readers read the title and the same list.
     """
-    panels = panels_of(picture, _height(above) if title else 0.0)
+    panels = make_panels(picture, _height(above) if title else 0.0)
     parts = _headline(title, above) if title else []
     for panel in panels:
         parts.append(f"<g>{''.join(_view(panel, picture))}</g>")
@@ -199,7 +199,7 @@ def _lines(panel: Panel, picture: Picture) -> Iterator[tuple[str, str]]:
     """
     for body in picture.outlines:
         yield "reference", _polygon(_outline(panel, body))
-    for frame in frames_of(picture):
+    for frame in list_frames(picture):
         room = frame.size * panel.scale if frame.size is not None else _AXIS
         fitting = (row for row in _AXES_BY_ROOM if room >= row[0])
         _, size, length = next(fitting)

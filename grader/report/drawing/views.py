@@ -78,10 +78,10 @@ class Panel(NamedTuple):
         if isinstance(body.shape, Capsule | Sphere):
             circle = CIRCLE * body.shape.radius * self.scale
             return hull(np.vstack([self.places(end) + circle for end in _ball_centres(body)]))
-        return hull(self.places(points_of(body)))
+        return hull(self.places(outline_body(body)))
 
 
-def points_of(body: Body) -> _Points:
+def outline_body(body: Body) -> _Points:
     """Return points of the frame whose hull is a body.
 
     Of a sphere and of the ends of a capsule, those that are farthest along the axes.
@@ -133,10 +133,10 @@ def from_back_to_front(bodies: Iterable[Body], panel: Panel) -> list[Body]:
 
     Slanted ones that interlock may be in the wrong order.
     """
-    return sorted(bodies, key=lambda body: float((points_of(body) @ panel.near).max()))
+    return sorted(bodies, key=lambda body: float((outline_body(body) @ panel.near).max()))
 
 
-def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
+def make_panels(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
     """Return the three views of a picture, below `top`.
 
     The room above the last one is for the key.
@@ -156,8 +156,8 @@ def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
 
 def _bounds(picture: Picture) -> tuple[_Points, _Points]:
     """Return the least and the largest coordinates (m) of what a picture shows, in the frame."""
-    points = [points_of(body) for body in (*picture.scene.bodies, *picture.outlines)]
-    shown = [frame.pose for frame in frames_of(picture)]
+    points = [outline_body(body) for body in (*picture.scene.bodies, *picture.outlines)]
+    shown = [frame.pose for frame in list_frames(picture)]
     origins = [pose.translation for pose in (*shown, *picture.frames)]
     points.append(origins or [(0.0, 0.0, 0.0)])
     every = np.concatenate(points)
@@ -180,7 +180,7 @@ class _LinkFrame(NamedTuple):
     size: float | None
 
 
-def frames_of(picture: Picture) -> list[_LinkFrame]:
+def list_frames(picture: Picture) -> list[_LinkFrame]:
     """Return the frames that are shown.
 
     They are those of links with callouts or shapes, or of all links if there are no shapes.

@@ -11,7 +11,7 @@ from grader.report.pages.inspection_page import problem_card
 from grader.report.pages.shell import Assets, render_page
 from grader.report.pages.viewing import GRAPH_SCRIPT, SOURCES, STYLES, GraphViewing, ProblemCard
 from grader.report.shown_graph import ShownGraph, transform_tree
-from grader.report.writers.graph_diagrams import Diagram, diagram_of
+from grader.report.writers.graph_diagrams import Diagram, make_diagram
 from grader.workspace.api import GraphEnd, GraphNode, GraphTransform, LaunchGraph
 
 _MAX_DEPTH = 20  # of a frame that is indented
@@ -87,7 +87,7 @@ def graph_html(shown: ShownGraph, viewing: GraphViewing | None = None) -> str:
     """Return a graph as an HTML page; that of `grader view` with `viewing`."""
     graph = shown.graph
     counts = [counted(len(graph.nodes), "node"), counted(len(shown.connections), "connection")]
-    drawing = _draw(diagram_of(shown))
+    drawing = _draw(make_diagram(shown))
     values: dict[str, object] = {
         "version": __version__,
         "title": printable(graph.path),
@@ -120,14 +120,14 @@ def fitting_drawing(graph: LaunchGraph) -> GraphDrawing | None:
     if not graph.nodes:
         return None
     shown = ShownGraph(graph, Inspection(graph.path))
-    diagram = diagram_of(shown)
+    diagram = make_diagram(shown)
     drawing = _draw(diagram, _MOST_FITTING)
-    while len(drawing.boxes) > 1 and _size_of(drawing) > _MAX_BYTES:
+    while len(drawing.boxes) > 1 and _estimate_size(drawing) > _MAX_BYTES:
         drawing = _draw(diagram, len(drawing.boxes) * 2 // 3)
     return drawing
 
 
-def _size_of(drawing: GraphDrawing) -> int:
+def _estimate_size(drawing: GraphDrawing) -> int:
     """Return about how many bytes of markup a drawing has."""
     size = _BYTES_AN_ARROW * len(drawing.arrows)
     for box, item in drawing.boxes:
@@ -148,7 +148,7 @@ def _lists(shown: ShownGraph) -> Iterator[tuple[str, list[tuple[str, str]]]]:
 
 def _draw(diagram: Diagram, most: int = _MAX_DRAWN) -> GraphDrawing:
     """Return so many boxes of a diagram with their arrows, and its size."""
-    items = _items_of(diagram, most)
+    items = _list_items(diagram, most)
     pairs: dict[tuple[str, str], str] = {}
     for arrow in diagram.arrows:
         ends = (f"n{arrow.node}", f"t{arrow.name}")
@@ -164,7 +164,7 @@ def _draw(diagram: Diagram, most: int = _MAX_DRAWN) -> GraphDrawing:
     return GraphDrawing(boxes, arrows, layout.width, layout.height)
 
 
-def _items_of(diagram: Diagram, most: int) -> dict[str, _Item]:
+def _list_items(diagram: Diagram, most: int) -> dict[str, _Item]:
     """Return what is drawn as boxes: the nodes, and as many names as a page holds."""
     items: dict[str, _Item] = {}
     for number, node, severity in diagram.nodes[:most]:
@@ -189,8 +189,8 @@ def _cards(shown: ShownGraph) -> Iterator[_NodeCard]:
     """Yield the nodes with their ends and findings, as many as a page holds."""
     rows_left, findings_left = _MAX_ROWS, _MAX_FINDINGS
     for number, node in shown.nodes[:_MAX_NODES]:
-        rows = [*_rows_of(shown, number, node)]
-        problems = dict.fromkeys(shown.findings_of(number))
+        rows = [*_list_rows(shown, number, node)]
+        problems = dict.fromkeys(shown.list_findings(number))
         for end in node.ends:
             problems |= dict.fromkeys(shown.findings_at(node, end))
         findings = [*problems][:findings_left]
@@ -217,7 +217,7 @@ def _is_unused(shown: ShownGraph, number: int, node: GraphNode, end: GraphEnd) -
     return is_of_program and not shown.partners(number, end)
 
 
-def _rows_of(shown: ShownGraph, number: int, node: GraphNode) -> Iterator[_EndRow]:
+def _list_rows(shown: ShownGraph, number: int, node: GraphNode) -> Iterator[_EndRow]:
     """Yield the ends of a node, without what it offers and nothing asks for."""
     for end in node.ends:
         if _is_unused(shown, number, node, end):

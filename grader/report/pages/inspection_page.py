@@ -12,10 +12,10 @@ from grader.report.inspection import (
     MAX_LISTED,
     NO_FAILURE,
     Inspection,
+    choose_look,
     effect,
     lists,
     log_line,
-    look_of,
     robot_line,
 )
 from grader.report.locations import source_lines
@@ -45,7 +45,7 @@ def inspection_html(inspection: Inspection, viewing: Viewing | None = None) -> s
         "path": path,
         "effect": effect(inspection),
         "extent": inspection.extent.words if inspection.extent is not None else "",
-        "verdict": _CLASSES.get(look_of(inspection), "failed"),
+        "verdict": _CLASSES.get(choose_look(inspection), "failed"),
         "problems": [
             problem_card(problem, inspection.source) for problem in inspection.problems[:MAX_LISTED]
         ],

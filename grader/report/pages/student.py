@@ -7,7 +7,7 @@ from itertools import groupby
 from grader.base.text import format_points, printable
 from grader.lab.checks.registry import GRAPH_CHECKS
 from grader.lab.documents.pictures import PDF, EmbeddedPicture
-from grader.lab.grading.criterion_pictures import may_have_pictures, pictures_of
+from grader.lab.grading.criterion_pictures import find_pictures, may_have_pictures
 from grader.lab.grading.report import Report
 from grader.report import content
 from grader.report.content import report_sections
@@ -18,9 +18,9 @@ from grader.report.criteria import (
     earned_text,
     groups,
     is_manual,
-    status_of,
+    name_status,
 )
-from grader.report.drawing.graded_picture import picture_of
+from grader.report.drawing.graded_picture import draw_report
 from grader.report.drawing.three_views import NO_PICTURE
 from grader.report.locations import diff_lines, location_text, source_lines
 from grader.report.pages.graph_page import GraphDrawing, fitting_drawing
@@ -38,7 +38,7 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
 
     Model answers are on it only if the rubric was loaded with them.
     """
-    picture = picture_of(report) if not report.is_bare else None
+    picture = draw_report(report) if not report.is_bare else None
     numbers = {}  # of the callouts in the picture, by criterion
     for callout in picture.callouts if picture is not None else ():
         if callout.point is not None:
@@ -67,7 +67,7 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
         "maximum": maximum,
         "symbols": SYMBOLS,
         "status_words": STATUS_WORDS,
-        "status_of": status_of,
+        "status_of": name_status,
         "earned_text": earned_text,
         "location_text": location_text,
         "diff_lines": diff_lines,
@@ -81,7 +81,7 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
         "pictures": _pictures(report, entries),
         "no_picture": NO_PICTURE,
     }
-    graph_of, graph = _graph_of(report)
+    graph_of, graph = _choose_graph(report)
     values |= {"graph": graph, "graph_of": graph_of}
     styles = "graph.css" if graph is not None else ""
     assets = Assets(styles=styles, scripts="student.js", sources="img-src data:")
@@ -98,7 +98,7 @@ def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tup
     for entry in entries:
         if not is_manual(entry.result) or not may_have_pictures(entry.result):
             continue
-        for picture in pictures_of(entry.result, report.submission):
+        for picture in find_pictures(entry.result, report.submission):
             if not isinstance(picture, EmbeddedPicture) or picture.kind is PDF:
                 continue
             if len(picture.data) <= room:
@@ -109,7 +109,7 @@ def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tup
     return shown
 
 
-def _graph_of(report: Report) -> tuple[str, GraphDrawing | None]:
+def _choose_graph(report: Report) -> tuple[str, GraphDrawing | None]:
     """Return the launch file whose graph criteria ask about, and the drawing of that; or none."""
     asking = [
         each.criterion for each in report.results if each.criterion.check.name in GRAPH_CHECKS

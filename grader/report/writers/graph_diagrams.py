@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from grader.base.text import printable
-from grader.report.shown_graph import ShownGraph, severity_of
+from grader.report.shown_graph import ShownGraph, find_severity
 from grader.workspace.api import GraphEnd, GraphNode
 
 _PLAIN = re.compile(r"[^A-Za-z0-9_/ .:*()-]")
@@ -44,14 +44,14 @@ class Diagram(NamedTuple):
     arrows: tuple[_DiagramArrow, ...]
 
 
-def diagram_of(shown: ShownGraph) -> Diagram:
+def make_diagram(shown: ShownGraph) -> Diagram:
     """Return what is drawn of a graph."""
     names: dict[tuple[str, str, int], _DiagramName] = {}
     places: dict[tuple[str, str, int], int] = {}
     arrows: list[_DiagramArrow] = []
     nodes: list[tuple[int, GraphNode, str]] = []
     for number, node in shown.nodes:
-        nodes.append((number, node, severity_of(shown.findings_of(number))))
+        nodes.append((number, node, find_severity(shown.list_findings(number))))
         for end in node.ends:
             if not _is_drawn(shown, number, node, end):
                 continue
@@ -59,7 +59,7 @@ def diagram_of(shown: ShownGraph) -> Diagram:
             own_number = number if "*" in end.name else -1
             key = (end.carrier, end.name, own_number)
             place = places.setdefault(key, len(places))
-            severity = severity_of(shown.findings_at(node, end))
+            severity = find_severity(shown.findings_at(node, end))
             before = names.setdefault(key, _DiagramName(end.carrier, end.name, end.type, severity))
             names[key] = before._replace(
                 type=before.type or end.type,
@@ -85,7 +85,7 @@ def _is_drawn(shown: ShownGraph, number: int, node: GraphNode, end: GraphEnd) ->
 
 def graph_mermaid(shown: ShownGraph) -> str:
     """Return a graph as Mermaid, which GitHub, GitLab and Obsidian draw."""
-    return "\n".join(["flowchart LR", *_mermaid_lines(diagram_of(shown))]) + "\n"
+    return "\n".join(["flowchart LR", *_mermaid_lines(make_diagram(shown))]) + "\n"
 
 
 def _mermaid_lines(diagram: Diagram) -> Iterator[str]:
@@ -141,7 +141,7 @@ def _mermaid(text: str) -> str:
 
 def graph_dot(shown: ShownGraph) -> str:
     """Return a graph in DOT, which Graphviz draws."""
-    return "\n".join(["digraph graph_of_launch {", *_dot_lines(diagram_of(shown)), "}"]) + "\n"
+    return "\n".join(["digraph graph_of_launch {", *_dot_lines(make_diagram(shown)), "}"]) + "\n"
 
 
 def _dot_lines(diagram: Diagram) -> Iterator[str]:

@@ -48,7 +48,7 @@ class _ShownEnd(NamedTuple):
     findings: Sequence[Problem]
 
 
-def _text_of(name: str) -> Any:
+def _null_if_empty(name: str) -> Any:
     """Return the key of a text that is null where it is empty."""
 
     def get(value: Any) -> str | None:
@@ -65,7 +65,7 @@ def _nodes(shown: ShownGraph) -> Iterator[_ShownNode]:
             _ShownEnd(end, len(shown.partners(number, end)), shown.findings_at(node, end))
             for end in node.ends
         ]
-        yield _ShownNode(number, node, tuple(ends), shown.findings_of(number))
+        yield _ShownNode(number, node, tuple(ends), shown.list_findings(number))
 
 
 def _json_value(value: Any) -> Any:
@@ -91,14 +91,14 @@ _END = JsonObject(
     {
         "kind": ({"enum": _END_KINDS}, "end.kind"),
         "name": (TEXT, "end.name"),
-        "type": _text_of("end.type"),
+        "type": _null_if_empty("end.type"),
         "depth": (nullable(_NUMBER), "end.qos.depth"),
         "reliability": (nullable(TEXT), "end.qos.reliability"),
         "durability": (nullable(TEXT), "end.qos.durability"),
         "connected": (_NUMBER, "partners"),
         "certain": (_YES_OR_NO, lambda shown: not shown.end.doubt),
-        "doubt": _text_of("end.doubt"),
-        "note": _text_of("end.note"),
+        "doubt": _null_if_empty("end.doubt"),
+        "note": _null_if_empty("end.note"),
         "location": (_PLACE, "end.location"),
         "findings": Many(_FINDING),
     }
@@ -113,13 +113,13 @@ _PARAMETER = JsonObject(
 _NODE = JsonObject(
     {
         "id": _NUMBER,
-        "name": _text_of("node.name"),
+        "name": _null_if_empty("node.name"),
         "program": (TEXT, "node.program"),
         "kind": ({"enum": [*GRAPH_NODE_KINDS]}, "node.kind"),
-        "inside": _text_of("node.inside"),
+        "inside": _null_if_empty("node.inside"),
         "certain": (_YES_OR_NO, lambda shown: not shown.node.doubt),
-        "doubt": _text_of("node.doubt"),
-        "opens_more": _text_of("node.opens_more"),
+        "doubt": _null_if_empty("node.doubt"),
+        "opens_more": _null_if_empty("node.opens_more"),
         "location": (_PLACE, "node.location"),
         "parameters": (Many(_PARAMETER), "node.parameters"),
         "ends": Many(_END),
@@ -133,13 +133,13 @@ _CONNECTION = JsonObject(
         "from": (_NUMBER, "from_node"),
         "to": (_NUMBER, "to_node"),
         "connects": (_YES_OR_NO, lambda each: not each.fault),
-        "fault": _text_of("fault"),
+        "fault": _null_if_empty("fault"),
         "certain": (_YES_OR_NO, lambda each: not each.doubt),
-        "doubt": _text_of("doubt"),
+        "doubt": _null_if_empty("doubt"),
     }
 )
 _PROCESS = JsonObject(
-    {"program": TEXT, "doubt": _text_of("doubt"), "location": _PLACE},
+    {"program": TEXT, "doubt": _null_if_empty("doubt"), "location": _PLACE},
 )
 _TRANSFORM = JsonObject(
     {

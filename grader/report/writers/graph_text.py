@@ -89,7 +89,7 @@ def _add_node(
     for word, reason in (("may not run", node.doubt), ("may open more", node.opens_more)):
         if reason:
             page.inset(f"{word}: {printable(reason)}", "dim")
-    _add_findings(page, shown.findings_of(number))
+    _add_findings(page, shown.list_findings(number))
     quiet: dict[str, list[str]] = {}
     for end in node.ends:
         partners = shown.partners(number, end)

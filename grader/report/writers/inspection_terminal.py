@@ -12,15 +12,15 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.base.text import counted, printable
-from grader.report.causes import Cause, CauseKind, causes_of, kinds_of, places_text
+from grader.report.causes import Cause, CauseKind, group_causes, group_problems, places_text
 from grader.report.inspection import (
     EFFECTS,
     NO_FAILURE,
     Inspection,
+    choose_look,
     effect,
     lists,
     log_line,
-    look_of,
     problem_counts,
     robot_line,
 )
@@ -30,8 +30,8 @@ from grader.report.writers.terminal_page import (
     SEVERITY_LOOKS,
     Page,
     block,
+    count_rows,
     excerpt_block,
-    height_of,
     shortened,
 )
 
@@ -54,9 +54,9 @@ def inspection_terminal(inspection: Inspection, console: Console, *, verbose: bo
     remarks = [block(console, Text(remark, "dim"), 0) for remark in _remarks_on(inspection)]
     problems = _ProblemRows(inspection, console, verbose=verbose)
     # The title of problems, its empty row, that above the remarks, and the last row of problems.
-    taken = page.height + sum(map(height_of, remarks)) + problems.height + 4
+    taken = page.height + sum(map(count_rows, remarks)) + problems.height + 4
     robots = [*_robot_rows(inspection, console)]
-    taken += sum(map(height_of, robots[:_LEAST_ROBOTS]))
+    taken += sum(map(count_rows, robots[:_LEAST_ROBOTS]))
     room = _RowsLeft(inf if verbose else _SCREEN - taken)
     problems.spell_out(room)
     robots = _first_robots(robots, room)
@@ -73,7 +73,7 @@ def inspection_terminal(inspection: Inspection, console: Console, *, verbose: bo
 
 def _head(inspection: Inspection) -> Text:
     """Return what ROS 2 does with a robot on its own, else how many problems there are."""
-    style = _STYLES[look_of(inspection)]
+    style = _STYLES[choose_look(inspection)]
     robot = inspection.robot
     if inspection.extent is None and robot is not None:
         path, name = printable(robot.path), f", {printable(robot.name)}"
@@ -127,7 +127,7 @@ def _robot_paths(inspection: Inspection, console: Console) -> list[str]:
     ends = []
     for robot, path in zip(inspection.robots, paths, strict=True):
         room = console.width - INDENT - len(robot_line(robot)) - len(": ")
-        ends.append(_end_of(path, max(room, _MIN_MESSAGE)))
+        ends.append(_keep_end(path, max(room, _MIN_MESSAGE)))
     return ends if len({*ends}) == len({*paths}) else _with_difference(paths)
 
 
@@ -163,7 +163,7 @@ def _whole_robots(
             for name, words in lines:
                 rows.append(block(console, Text.assemble(name, (words, "dim")), INDENT))
     is_asked = verbose or inspection.extent is None or inspection.is_posed
-    if is_asked or sum(map(height_of, rows)) <= room.rows:
+    if is_asked or sum(map(count_rows, rows)) <= room.rows:
         return rows
     return []
 
@@ -176,7 +176,7 @@ class _RowsLeft:
 
     def takes(self, old: Text, new: Text) -> bool:
         """Return whether there are rows for a text in place of another; then it takes them."""
-        more = height_of(new) - height_of(old)
+        more = count_rows(new) - count_rows(old)
         if more > max(0, self.rows):
             return False
         self.rows -= more
@@ -193,9 +193,9 @@ class _ProblemRows:
         self._inspection, self._console = inspection, console
         shown = inspection.robot if inspection.extent is None else None
         self._urdf = shown.reading.source.path if shown is not None else ""
-        causes = causes_of(inspection.problems, with_other_messages=not verbose)
+        causes = group_problems(inspection.problems, with_other_messages=not verbose)
         errors = [cause for cause in causes if cause.problem.severity == "error"]
-        self._kinds = kinds_of(causes[len(errors) :])
+        self._kinds = group_causes(causes[len(errors) :])
         most, self._most_excerpts = _MAX_CAUSES, _MAX_EXCERPTS
         if verbose:
             most = self._most_excerpts = len(errors)
@@ -258,11 +258,11 @@ class _ProblemRows:
 
     def _in_a_row(self, cause: Cause) -> Text:
         """Return an error in one row; a long path without its start."""
-        head, message = _name_of(cause), printable(cause.problem.message)
+        head, message = _write_label(cause), printable(cause.problem.message)
         head.append(f"{cause.problem.rule} ".lstrip())
         more = f" and {len(cause.others)} more" if cause.others else ""
         room = self._console.width - len(head) - len(more) - _MIN_MESSAGE
-        where = _end_of(self._line_of(cause), room)
+        where = _keep_end(self._write_line(cause), room)
         text = Text.assemble(head, (f"{where}{more}: ", "dim"), message)
         return shortened(self._console, text)
 
@@ -275,7 +275,7 @@ class _ProblemRows:
         text = f"{kind.total}: {rules}"
         if len(counts) == 1:
             text = f"{kind.problem.rule} {kind.total}: {kind.problem.kind.title}".lstrip()
-        return shortened(self._console, Text.assemble(_name_of(kind), text))
+        return shortened(self._console, Text.assemble(_write_label(kind), text))
 
     def _whole(self, cause: Cause) -> Text:
         """Return a problem with its whole message."""
@@ -284,7 +284,7 @@ class _ProblemRows:
     def _begun(self, cause: Cause, whole: Text) -> Text:
         """Return the first two rows of a problem, without that of its code if it is alone there."""
         lines = [*whole.split("\n")]
-        most = 3 if len(lines[0]) < len(_name_of(cause)) else 2
+        most = 3 if len(lines[0]) < len(_write_label(cause)) else 2
         if len(lines) <= most:
             return whole
         last = lines[most - 1][: self._console.width - len(_POINTS)].append(_POINTS)
@@ -298,7 +298,7 @@ class _ProblemRows:
         files = [*places_text(cause.others, self._urdf)]
         places, longest = "; ".join(files), max(len(file.split(" ")[0]) for file in files)
         words = "also at" if cause.is_repeated else "likewise at"
-        indent = " " * len(_name_of(cause))
+        indent = " " * len(_write_label(cause))
         if longest >= self._console.width - len(indent):
             indent = " " * (2 * INDENT)
         below = block(self._console, Text(f"{words} {places}", "dim"), len(indent), Text(indent))
@@ -310,12 +310,12 @@ class _ProblemRows:
         source = self._inspection.source(at.path)
         if source is None:
             return text
-        indent = min(len(_name_of(cause)), self._console.width // 5)
+        indent = min(len(_write_label(cause)), self._console.width // 5)
         return text + Text("\n") + excerpt_block(self._console, source, at, indent)
 
     def _inset(self, cause: Cause, where: str) -> Text:
         """Return a message behind its code and place, or below the code if the place is long."""
-        console, head = self._console, _name_of(cause)
+        console, head = self._console, _write_label(cause)
         rule = f"{cause.problem.rule} ".lstrip()
         text = Text.assemble(rule, (where, "dim"), printable(cause.problem.message))
         if len(where.split(" ", maxsplit=1)[0]) < console.width - len(head):
@@ -326,18 +326,18 @@ class _ProblemRows:
 
     def _place(self, cause: Cause) -> str:
         """Return the first place of a cause, and how many others there are."""
-        place = _end_of(self._line_of(cause), self._console.width - 2 * INDENT - 1)
+        place = _keep_end(self._write_line(cause), self._console.width - 2 * INDENT - 1)
         others = len(cause.others)
         more = f" and {counted(others, 'more place')}" if others else ""
         return f"{place}{calls_text(cause.problem.location)}{more}: "
 
-    def _line_of(self, cause: Cause) -> str:
+    def _write_line(self, cause: Cause) -> str:
         at = cause.problem.location
         file = "line " if at.path == self._urdf else f"{printable(at.path)}:"
         return f"{file}{at.line}"
 
 
-def _end_of(text: str, most: int) -> str:
+def _keep_end(text: str, most: int) -> str:
     """Return a text of at most so many columns: of a longer one the end."""
     if len(text) <= most:
         return text
@@ -356,7 +356,7 @@ def _with_difference(paths: Sequence[str]) -> list[str]:
     return shown
 
 
-def _name_of(shown: Cause | CauseKind) -> Text:
+def _write_label(shown: Cause | CauseKind) -> Text:
     """Return the code and the severity."""
     problem = shown.problem
     name = f"{problem.code} {problem.severity} "

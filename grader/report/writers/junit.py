@@ -22,7 +22,7 @@ from grader.report.content import (
     head,
     report_sections,
 )
-from grader.report.criteria import Entry, earned_text, is_failure, plain_lines, status_of
+from grader.report.criteria import Entry, earned_text, is_failure, name_status, plain_lines
 from grader.report.locations import archive_around
 
 # The element for each status of a criterion that is not passed.
@@ -72,7 +72,7 @@ def _kind(result: Result) -> str:
         return ""
     if is_failure(result) and result.criterion.bonus:
         return "skipped"
-    return _KINDS.get(status_of(result), "")
+    return _KINDS.get(name_status(result), "")
 
 
 def _facts(report: Report) -> dict[str, str]:

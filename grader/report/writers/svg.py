@@ -4,7 +4,7 @@ from grader.base.text import printable
 from grader.lab.grading.report import Report
 from grader.report.content import bonus_line, grade_line, notes, score_text, verdict_line
 from grader.report.criteria import remarks_on
-from grader.report.drawing.graded_picture import picture_of
+from grader.report.drawing.graded_picture import draw_report
 from grader.report.drawing.three_views import NO_PICTURE, drawing_file
 
 
@@ -19,5 +19,5 @@ def render_svg(report: Report) -> str:
     for result in report.results:
         words += [f"{printable(result.criterion.id)}: {remark}" for remark in remarks_on(result)]
     return drawing_file(
-        picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, NO_PICTURE
+        draw_report(report), f"{report.rubric.title}: {score_text(report)}", words, NO_PICTURE
     )

@@ -36,10 +36,10 @@ from grader.report.criteria import (
     groups,
     is_failure,
     is_manual,
+    name_status,
     pending_reason,
-    points_of,
     remarks_on,
-    status_of,
+    write_points,
 )
 from grader.report.locations import diff_lines, location_text
 from grader.report.screen import link_to
@@ -49,8 +49,8 @@ from grader.report.writers.terminal_page import (
     SEVERITY_LOOKS,
     Page,
     block,
+    count_rows,
     excerpt_block,
-    height_of,
 )
 
 if TYPE_CHECKING:
@@ -292,7 +292,7 @@ def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
     This is where each answer and picture was found, or why a check cannot decide.
     """
     if pending:
-        points = points_of(result for entry in pending for result in entry.results)
+        points = write_points(result for entry in pending for result in entry.results)
         page.title(f"Needs manual grading ({points})" if report.open_points else "Not graded")
     every = list[Entry]()
     for entry in pending:
@@ -341,7 +341,7 @@ def _show_files(report: Report, page: Page, most: int) -> None:
     if listed:
         page.leave_row()
     rows = [_problem_row(problem, page) for problem in listed[:_MAX_PROBLEMS]]
-    if most and page.height + sum(map(height_of, rows)) + _HEIGHT_OF_END > most:
+    if most and page.height + sum(map(count_rows, rows)) + _HEIGHT_OF_END > most:
         rows = []
     page.rows.extend(rows)
     rest = len(problems) - len(rows)
@@ -424,7 +424,7 @@ def _show_parts(report: Report, page: Page) -> None:
                 page.title(Text.assemble(name, (f"  {group.points}", "dim")))
             for result in group.results:
                 # One that fails only because of another one has its points: it is no mistake.
-                mark = page.mark("skipped" if _is_carried(result) else status_of(result))
+                mark = page.mark("skipped" if _is_carried(result) else name_status(result))
                 start = Text.assemble("  ", mark, f" {earned_text(result):<5} ")
                 page.inset(_criterion_row(result), indent=len(start), head=start)
 
@@ -440,7 +440,7 @@ def _criterion_row(result: Result) -> Text:
 
     A title would read as a fact.
     """
-    status = status_of(result)
+    status = name_status(result)
     if status == "passed":
         return Text(printable(result.criterion.title))
     reason = ""

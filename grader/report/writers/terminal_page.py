@@ -31,7 +31,7 @@ class Page(NamedTuple):
     @property
     def height(self) -> int:
         """The number of rows so far that are not empty."""
-        return sum(height_of(row) for row in self.rows if row.plain)
+        return sum(count_rows(row) for row in self.rows if row.plain)
 
     def close_up(self, most: int) -> None:
         """Remove empty rows, the last ones first, until there are at most so many rows.
@@ -122,6 +122,6 @@ def _symbol(console: Console, fancy: str, plain: str) -> str:
     return plain
 
 
-def height_of(text: Text) -> int:
+def count_rows(text: Text) -> int:
     """Return how many rows a text has."""
     return text.plain.count("\n") + 1

@@ -100,11 +100,11 @@ class YamlNode:
 
     def key_location(self, *keys: str) -> Location:
         """Return where the last of some keys, which are there, begins."""
-        mapping = self.mapping_of(keys)
+        mapping = self.find_mapping(keys)
         assert mapping is not None
         return _locate_mark(mapping.source, mapping.key_marks[keys[-1]])
 
-    def mapping_of(self, keys: "tuple[str, ...]") -> "YamlNode | None":
+    def find_mapping(self, keys: "tuple[str, ...]") -> "YamlNode | None":
         """Return the mapping that has the last of some keys."""
         reached: dict[YamlNode, None] = {self: None}
         for above in keys[:-1]:

@@ -7,8 +7,8 @@ from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue, not_kn
 from grader.ros.cpp.declarations import (
     CppFunction,
     CppVariable,
-    declaration_of,
     declared_in,
+    find_declaration,
     is_constant,
     plain_name,
 )
@@ -22,9 +22,9 @@ from grader.ros.cpp.literals import (
 from grader.ros.cpp.syntax import CppNode, parse_cpp
 from grader.ros.cpp.unit import (
     CppUnit,
-    arguments_of,
     called_name,
     is_conditional,
+    list_arguments,
     template_arguments,
 )
 from grader.ros.python.budget import Budget, OutOfBudget
@@ -92,7 +92,7 @@ class CppEvaluation:
         self._locals: dict[tuple[str, CppNode], _LocalVariable | None] = {}
         self._depth = 0
 
-    def value_of(self, node: CppNode | None) -> CppValue:
+    def evaluate_node(self, node: CppNode | None) -> CppValue:
         """Return the value of an expression; None without one. Never raises."""
         if node is None:
             return None
@@ -121,7 +121,7 @@ class CppEvaluation:
 
     def joined_texts(self, node: CppNode) -> CppValue:
         """Return the text of literals that stand side by side."""
-        return _joined([self.value_of(child) for child in node.children])
+        return _joined([self.evaluate_node(child) for child in node.children])
 
     def number(self, node: CppNode) -> CppValue:
         """Return the value of a number or a boolean."""
@@ -135,16 +135,16 @@ class CppEvaluation:
     def inner(self, node: CppNode) -> CppValue:
         """Return the value of what is in parentheses, or is pointed to."""
         argument = node.child("argument")
-        return self.value_of(argument or next(iter(node.children), None))
+        return self.evaluate_node(argument or next(iter(node.children), None))
 
     def items(self, node: CppNode) -> CppValue:
         """Return the list of what is in braces."""
-        return [self.value_of(child) for child in node.children]
+        return [self.evaluate_node(child) for child in node.children]
 
     def with_suffix(self, node: CppNode) -> CppValue:
         """Return the value of a literal with an ending of its own, such as a duration."""
         suffix = node.of_kind("literal_suffix")
-        value = self.value_of(node.children[0]) if node.children else None
+        value = self.evaluate_node(node.children[0]) if node.children else None
         ending = suffix[0].text if suffix else ""
         if isinstance(value, str) and ending in ("s", "sv"):
             return value
@@ -157,21 +157,24 @@ class CppEvaluation:
         written = node.child("operator")
         sign = written.text if written is not None else ""
         if node.kind == "unary_expression":
-            value = self.value_of(node.child("argument"))
+            value = self.evaluate_node(node.child("argument"))
             is_number = isinstance(value, int | float) and not isinstance(value, bool)
             return -value if sign == "-" and is_number else not_known("it is computed")
-        left, right = self.value_of(node.child("left")), self.value_of(node.child("right"))
+        left, right = (
+            self.evaluate_node(node.child("left")),
+            self.evaluate_node(node.child("right")),
+        )
         if sign == "+" and (_is_textual(left) or _is_textual(right)):
             return _joined([left, right])
         return not_known("it is computed")
 
     def call(self, node: CppNode) -> CppValue:
         """Return a call of a function or method that is recorded."""
-        arguments = [self.value_of(argument) for argument in arguments_of(node)]
+        arguments = [self.evaluate_node(argument) for argument in list_arguments(node)]
         function = node.child("function")
         owner = None
         if function is not None and function.kind == "field_expression":
-            owner = self.value_of(function.child("argument"))
+            owner = self.evaluate_node(function.child("argument"))
         name = called_name(node)
         if _is_textual(owner) and name in _SAME_TEXT:
             return owner
@@ -182,7 +185,7 @@ class CppEvaluation:
 
     def made(self, node: CppNode) -> CppValue:
         """Return what makes an object, `new Type(...)` or `Type{...}`, as a call of its type."""
-        arguments = [self.value_of(argument) for argument in arguments_of(node)]
+        arguments = [self.evaluate_node(argument) for argument in list_arguments(node)]
         kind = node.child("type")
         if kind is None:
             return _constructed(CppCall("", arguments, node, ()))
@@ -227,7 +230,7 @@ class CppEvaluation:
     def _variables_at(self, node: CppNode, name: str) -> Sequence[CppVariable]:
         """Return the variables of namespaces and classes that a name may mean at a place."""
         function = self.unit.function_around(node)
-        scopes = self.unit.scopes_of(function) if function is not None else ()
+        scopes = self.unit.list_scopes(function) if function is not None else ()
         return self.unit.variables_named(name, scopes)
 
     def _local_variable(self, name: str, function: CppFunction) -> "_LocalVariable | None":
@@ -238,11 +241,11 @@ class CppEvaluation:
             uses = [use for use in self.unit.uses.get(name, ()) if use.file is node.file]
             inside = [use for use in uses if node.start <= use.start < node.end]
             self._budget.charge(1 + len(uses) + _OF_USE * len(inside))
-            declared = [use for use in inside if declaration_of(use) is not None]
+            declared = [use for use in inside if find_declaration(use) is not None]
             self._locals[key] = _LocalVariable(declared, inside) if declared else None
         return self._locals[key]
 
-    def uses_of(self, name: CppNode) -> Sequence[CppNode] | None:
+    def find_uses(self, name: CppNode) -> Sequence[CppNode] | None:
         """Return where the variable is written that a name means at a place.
 
         Returns None where that is not known.
@@ -263,7 +266,7 @@ class CppEvaluation:
         if len(local.declared) > 1:
             return not_known("the name is declared twice")
         name = local.declared[0]
-        declaration = declaration_of(name)
+        declaration = find_declaration(name)
         assert declaration is not None
         if declaration.kind in ("parameter_declaration", "optional_parameter_declaration"):
             return CppName(node.text, name)
@@ -290,7 +293,7 @@ class CppEvaluation:
             local.effects = [(name, not_known("it depends on itself"))]
             effects: list[tuple[CppNode, list[_Write] | Unknown]] = []
             for use in local.uses:
-                effect = self._effect_of(use, declaration) if use is not name else []
+                effect = self._find_effect(use, declaration) if use is not name else []
                 if effect != []:
                     effects.append((use, effect))
             local.effects = effects
@@ -310,12 +313,12 @@ class CppEvaluation:
         kind = declaration.child("type")
         name = plain_name(kind) if kind is not None else ""
         if value.kind in ("argument_list", "initializer_list", "parameter_list"):
-            arguments = [self.value_of(argument) for argument in value.children]
+            arguments = [self.evaluate_node(argument) for argument in value.children]
             if value.kind == "initializer_list" and kind is not None and _is_plain(name):
                 return arguments[0] if len(arguments) == 1 else not_known("it has no value")
             types = template_arguments(kind) if kind is not None else ()
             return _constructed(CppCall(name, arguments, value, types))
-        return self.value_of(value)
+        return self.evaluate_node(value)
 
     def _value_of_variable(self, variables: Sequence[CppVariable], node: CppNode) -> CppValue:
         """Return the value of a variable of a namespace or class at a place where it is read."""
@@ -331,11 +334,11 @@ class CppEvaluation:
             return self._value_once(variable.declarator, declaration, variable.value)
         if variable.declarator not in self._members:
             self._members[variable.declarator] = not_known("it depends on itself")
-            self._members[variable.declarator] = self._writes_of(variable, declaration)
+            self._members[variable.declarator] = self._list_writes(variable, declaration)
         writes = self._members[variable.declarator]
         return writes if isinstance(writes, Unknown) else self._value_written(writes, node)
 
-    def _writes_of(self, variable: CppVariable, declaration: CppNode) -> list[_Write] | Unknown:
+    def _list_writes(self, variable: CppVariable, declaration: CppNode) -> list[_Write] | Unknown:
         """Return the values that a variable of a namespace or class gets."""
         writes: list[_Write] = []
         if variable.value is not None:
@@ -345,7 +348,7 @@ class CppEvaluation:
             self._budget.charge(_OF_USE)
             if use is variable.declarator or self._is_of_another(use, variable):
                 continue
-            more = self._effect_of(use, None)
+            more = self._find_effect(use, None)
             if isinstance(more, Unknown):
                 return more
             writes += more
@@ -362,7 +365,7 @@ class CppEvaluation:
         if use.kind == "identifier" and is_local:
             return True
         is_of_this = use.kind == "identifier" or is_member_of_this(use)
-        scopes = self.unit.scopes_of(function)
+        scopes = self.unit.list_scopes(function)
         variables = self.unit.variables_named(use.text, scopes)
         return is_of_this and bool(variables) and variables[0] is not variable
 
@@ -385,7 +388,7 @@ class CppEvaluation:
     # --- What is done with a variable
     # ----------------------------------------------------------------------
 
-    def _effect_of(self, use: CppNode, declaration: CppNode | None) -> list[_Write] | Unknown:
+    def _find_effect(self, use: CppNode, declaration: CppNode | None) -> list[_Write] | Unknown:
         """Return the values that a variable gets where its name is written.
 
         Returns Unknown where that is not known. `declaration` is that of a local one, whose methods
@@ -401,7 +404,7 @@ class CppEvaluation:
             case (("argument_list" | "template_argument_list"), _):
                 return self._effect_of_argument(node, parent)
             case "field_initializer", _:
-                values = [self.value_of(argument) for argument in arguments_of(parent)]
+                values = [self.evaluate_node(argument) for argument in list_arguments(parent)]
                 return [_Write("set", node, values[0] if values else not_known("it has no value"))]
             case "assignment_expression", "left":
                 return self._effect_of_assignment(node, parent)
@@ -416,7 +419,7 @@ class CppEvaluation:
             return [] if is_read else not_known("it may change")
         name = called_name(call).rpartition("::")[2]
         position = self._interface.setting.get(name)
-        arguments = arguments_of(call)
+        arguments = list_arguments(call)
         if position is not None and node in arguments[position : position + 1]:
             if not _is_statement(call):
                 return not_known("it may be set")
@@ -428,14 +431,14 @@ class CppEvaluation:
 
     def _as_result(self, call: CppNode, name: str) -> CppCall:
         """Return the value that a function sets its argument to, as if it returned it."""
-        arguments = arguments_of(call)
-        return CppCall(name, [self.value_of(arguments[0])], call, template_arguments(call))
+        arguments = list_arguments(call)
+        return CppCall(name, [self.evaluate_node(arguments[0])], call, template_arguments(call))
 
     def _effect_of_assignment(self, node: CppNode, parent: CppNode) -> list[_Write] | Unknown:
         operator = parent.child("operator")
         if operator is None or operator.text != "=" or not _is_statement(parent):
             return not_known("it is computed")
-        return [_Write("set", node, self.value_of(parent.child("right")))]
+        return [_Write("set", node, self.evaluate_node(parent.child("right")))]
 
     def _effect_of_method(
         self, node: CppNode, parent: CppNode, declaration: CppNode | None
@@ -453,7 +456,7 @@ class CppEvaluation:
             return not_known("a method may change it")
         if not call.parent or call.parent.parent is not declaration.parent:
             return not_known("a method may change it")
-        arguments = [self.value_of(argument) for argument in arguments_of(call)]
+        arguments = [self.evaluate_node(argument) for argument in list_arguments(call)]
         return [_Write("set", node, CppCall(name, arguments, call, (), _BEFORE))]
 
     def _value_of_macro(self, name: str) -> CppValue:
@@ -478,7 +481,7 @@ class CppEvaluation:
                 kinds = (*TEXTS, *NUMBERS, "concatenated_string")
                 is_read = syntax.error is None and not syntax.broken
                 if value is not None and value.kind in kinds and is_read:
-                    return self.value_of(value)
+                    return self.evaluate_node(value)
         return not_known("the macro is not evaluated")
 
 

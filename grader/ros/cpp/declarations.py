@@ -339,7 +339,7 @@ def is_argument(node: CppNode) -> bool:
     return len(around) == 5 and around[4].kind == "compound_statement" and len(parent.children) == 1
 
 
-def declaration_of(name: CppNode) -> CppNode | None:
+def find_declaration(name: CppNode) -> CppNode | None:
     """Return the declaration that declares a name as a local variable or a parameter.
 
     Returns None for a name that is used.

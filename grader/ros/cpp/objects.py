@@ -52,7 +52,7 @@ def made_in(parent: CppNode) -> CppNode:
     return parent
 
 
-def variable_of(made: CppNode) -> CppNode | None:
+def find_variable(made: CppNode) -> CppNode | None:
     """Return the name of the variable that an object is made for; None without one."""
     if made.kind == "declaration":
         return next((name for name, _ in declared_in(made)), None)
@@ -72,7 +72,7 @@ def _last_name(node: CppNode | None) -> CppNode | None:
     return node if node is not None and node.kind == "identifier" else None
 
 
-def self_of(use: CppNode, same: Collection[str]) -> CppNode:
+def find_object(use: CppNode, same: Collection[str]) -> CppNode:
     """Return the expression that is the object whose name is written.
 
     The name may be followed by calls of the methods that return the object.
@@ -88,7 +88,7 @@ def self_of(use: CppNode, same: Collection[str]) -> CppNode:
     return node
 
 
-def taker_of(node: CppNode) -> str | None:
+def find_taker(node: CppNode) -> str | None:
     """Return the name of what is given an object as an argument; None where nothing is."""
     if is_argument(node):
         around = [*islice(node.ancestors(), 2)]
@@ -111,7 +111,7 @@ def _name_called(call: CppNode) -> str | None:
     name = called_name(call)
     short = name.rpartition("::")[2]
     if short in _WRAPPERS:
-        return taker_of(call)
+        return find_taker(call)
     types = template_arguments(call)
     return plain(types[0]) if short in _MAKERS and types else name
 

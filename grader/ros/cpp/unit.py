@@ -115,7 +115,7 @@ class CppUnit:
 
     def _search_meanings(self, name: str, scopes: Sequence[str]) -> tuple[str, ...]:
         for _ in range(_MAX_ALIASES):
-            target = self._target_of(name, scopes)
+            target = self._resolve_alias(name, scopes)
             if target is None:
                 break
             name = target
@@ -124,7 +124,7 @@ class CppUnit:
                 return (candidate,)
         return (name, *(f"{opened}::{name}" for opened in self.opened))
 
-    def _target_of(self, name: str, scopes: Sequence[str]) -> str | None:
+    def _resolve_alias(self, name: str, scopes: Sequence[str]) -> str | None:
         """Return a name with its beginning replaced by what that stands for; None without one."""
         parts = name.split("::")
         for count in range(len(parts), 0, -1):
@@ -148,16 +148,16 @@ class CppUnit:
                 return self.variables[candidate]
         return ()
 
-    def owner_of(self, function: CppFunction) -> str:
+    def find_owner(self, function: CppFunction) -> str:
         """Return the full name of the class that a function is a method of; empty without one."""
         if not function.owner:
             return ""
         meanings = self.meanings(function.owner, function.scopes)
         return meanings[0] if meanings[0] in self.classes else ""
 
-    def scopes_of(self, function: CppFunction) -> tuple[str, ...]:
+    def list_scopes(self, function: CppFunction) -> tuple[str, ...]:
         """Return the namespaces and classes in which the names of a function are searched."""
-        owner = self.owner_of(function)
+        owner = self.find_owner(function)
         return tuple(owner.split("::")) if owner else function.scopes
 
     @cached_property
@@ -219,7 +219,7 @@ def called_name(call: CppNode) -> str:
     return call.called
 
 
-def arguments_of(call: CppNode) -> list[CppNode]:
+def list_arguments(call: CppNode) -> list[CppNode]:
     """Return the arguments of a call, of a constructor or of an initializer."""
     given = call.child("arguments")
     if given is None:

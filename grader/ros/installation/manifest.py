@@ -9,7 +9,7 @@ from grader.base.reuse import reuse
 from grader.base.source import Location, Source
 from grader.ros.installation import package_problems as kinds
 from grader.ros.installation.manifest_conditions import evaluate_condition
-from grader.ros.installation.manifest_rules import email_of, find_refusals, tag_of, text_of
+from grader.ros.installation.manifest_rules import find_refusals, read_email, read_tag, read_text
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile, recover_xml
 
 _MAX_MISPLACED = 100  # dependencies in <export>
@@ -79,7 +79,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         )
         return _read_broken(data, source, problem)
     root, start = file.root, Location(path, 1, 1)
-    if tag_of(root) != "package":
+    if read_tag(root) != "package":
         problem = Problem(
             kinds.BAD_MANIFEST, f"the root of package.xml is <{root.tag}>, not <package>", start
         )
@@ -94,7 +94,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
 
 def _is_used_build_type(element: Element) -> bool:
     is_used = evaluate_condition(element.get("condition")) is not False
-    return tag_of(element) == "build_type" and is_used
+    return read_tag(element) == "build_type" and is_used
 
 
 def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> Manifest:
@@ -105,14 +105,14 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
     names: list[Element] = []
     groups = set[str]()
     for element in root.iterchildren("*"):
-        tag = tag_of(element)
+        tag = read_tag(element)
         if tag == "name":
             names.append(element)
         elif tag == "member_of_group":
-            groups.add(text_of(element))
+            groups.add(read_text(element))
     declared = _declared_dependencies(file)
-    name = text_of(names[0]) if names else ""
-    build_type = " and ".join(map(text_of, build_types)) if build_types else "catkin"
+    name = read_text(names[0]) if names else ""
+    build_type = " and ".join(map(read_text, build_types)) if build_types else "catkin"
     return Manifest(
         source,
         name or None,
@@ -134,11 +134,11 @@ def _declared_dependencies(file: XmlFile) -> tuple[DeclaredDependency, ...]:
     """Return the dependencies in a package.xml."""
     declared = []
     for element in file.root.iterchildren("*"):
-        tag = tag_of(element)
+        tag = read_tag(element)
         if tag.endswith("depend"):
             is_conditional = element.get("condition") is not None
             at = file.location(element)
-            declared.append(DeclaredDependency(text_of(element), tag, at, is_conditional))
+            declared.append(DeclaredDependency(read_text(element), tag, at, is_conditional))
     return tuple(declared)
 
 
@@ -158,7 +158,7 @@ def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:
     This is the first name, and the first build type.
     """
     root, start = recover_xml(data), Location(source.path, 1, 1)
-    if root is None or tag_of(root) != "package":
+    if root is None or read_tag(root) != "package":
         return Manifest(source, None, "", (problem,), start, start)
     name, build_type = root.findtext(".//{*}name") or "", root.findtext(".//{*}build_type") or ""
     location = problem.location
@@ -169,12 +169,12 @@ def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:
 
 def _misplaced_dependencies(file: XmlFile, exports: Sequence[Element]) -> dict[str, Location]:
     """Return the dependencies that stand in <export>, where no tool reads them."""
-    exported = [element for element in exports if tag_of(element).endswith("depend")]
-    return {text_of(element): file.location(element) for element in exported[:_MAX_MISPLACED]}
+    exported = [element for element in exports if read_tag(element).endswith("depend")]
+    return {read_text(element): file.location(element) for element in exported[:_MAX_MISPLACED]}
 
 
 def _exports(root: Element) -> list[Element]:
-    exports = (element for element in root.iterchildren("*") if tag_of(element) == "export")
+    exports = (element for element in root.iterchildren("*") if read_tag(element) == "export")
     return [element for export in exports for element in export.iterchildren("*")]
 
 
@@ -189,13 +189,13 @@ def _problems(file: XmlFile) -> Iterator[Problem]:
     for words, element in find_refusals(root):
         yield _refused(words, file.location(element))
     for element in root.iterchildren("*"):
-        tag, email = tag_of(element), element.get("email") or ""
+        tag, email = read_tag(element), element.get("email") or ""
         is_text = tag in ("license", "maintainer", "description")
         if is_text and "todo" in f"{element.text or ''} {email}".lower():
             yield Problem(
                 kinds.STILL_TO_DO, f"<{tag}> of package.xml is still TODO", file.location(element)
             )
-        if tag in ("maintainer", "author") and email_of(element) != email:
+        if tag in ("maintainer", "author") and read_email(element) != email:
             message = (
                 f"the email of <{tag}> in package.xml is in quotes, as git has it: delete the "
                 "inner quotes"

@@ -41,7 +41,7 @@ def find_refusals(root: Element) -> Iterator[_Refusal]:
     """
     children: dict[str, list[Element]] = defaultdict(list)
     for element in root.iterchildren("*"):
-        children[tag_of(element)].append(element)
+        children[read_tag(element)].append(element)
     version = _read_format(root)
     if version is None:
         yield f"Unable to handle package.xml format version '{root.get('format')}'", root
@@ -60,7 +60,7 @@ def find_refusals(root: Element) -> Iterator[_Refusal]:
     yield from _own_dependencies(children, version)
 
 
-def tag_of(element: Element) -> str:
+def read_tag(element: Element) -> str:
     """Return the tag of an element as it is written: catkin_pkg ignores namespaces."""
     name = str(element.tag).rpartition("}")[2]
     if element.prefix:
@@ -68,13 +68,13 @@ def tag_of(element: Element) -> str:
     return name
 
 
-def text_of(element: Element) -> str:
+def read_text(element: Element) -> str:
     """Return the text directly in an element."""
     pieces = [element.text, *(child.tail for child in element)]
     return "".join(piece for piece in pieces if piece).strip(" \n\r\t")
 
 
-def email_of(person: Element) -> str:
+def read_email(person: Element) -> str:
     """Return the email of a maintainer or author, without quotes.
 
     A quoted git configuration puts quotes around it.
@@ -96,7 +96,7 @@ def _tags_of_dependencies(version: int) -> tuple[str, ...]:
 
 def _make_key(dependency: Element) -> tuple[str | None, ...]:
     """Return what makes two dependencies equal."""
-    return (text_of(dependency), *(dependency.get(name) for name in (*_VERSIONS, "condition")))
+    return (read_text(dependency), *(dependency.get(name) for name in (*_VERSIONS, "condition")))
 
 
 def _redundant_dependencies(children: _Children, version: int) -> Iterator[_Refusal]:
@@ -113,7 +113,7 @@ def _redundant_dependencies(children: _Children, version: int) -> Iterator[_Refu
         key = _make_key(dependency)
         same = [tag for tag in tags if counts[tag][key]]
         if same:
-            yield words.format(text_of(dependency), ", ".join(same)), dependency
+            yield words.format(read_text(dependency), ", ".join(same)), dependency
         if version != 1:
             for tag in tags:
                 counts[tag][key] += 1
@@ -154,7 +154,7 @@ def _unknown_parts(root: Element, children: _Children, version: int) -> Iterator
             continue
         for element in elements:
             yield from _unknown_attributes(element, known[tag])
-            inner = [tag_of(child) for child in element.iterchildren("*")]
+            inner = [read_tag(child) for child in element.iterchildren("*")]
             if inner and tag not in ("description", "export"):
                 yield (
                     f'The "{tag}" tag must not contain the following children: {enumerated(inner)}',
@@ -166,7 +166,7 @@ def _unknown_attributes(element: Element, known: Sequence[str]) -> Iterator[_Ref
     unknown = [name for name in map(str, element.attrib) if name not in known and "}" not in name]
     if unknown:
         words = (
-            f'The "{tag_of(element)}" tag must not have the following attributes: '
+            f'The "{read_tag(element)}" tag must not have the following attributes: '
             f"{enumerated(unknown)}"
         )
         yield words, element
@@ -182,10 +182,10 @@ def _invalid_texts(root: Element, children: _Children) -> Iterator[_Refusal]:
     for element in children.get("version", ()):
         yield from _invalid_versions(element)
     for element in children.get("description", ()):
-        if not text_of(element) and not len(element):
+        if not read_text(element) and not len(element):
             yield "Package description must not be empty", element
     for element in children.get("license", ()):
-        if not text_of(element).strip():
+        if not read_text(element).strip():
             yield "The license tag must neither be empty nor only contain whitespaces", element
     for element in (*children.get("maintainer", ()), *children.get("author", ())):
         yield from _invalid_emails(element)
@@ -196,12 +196,12 @@ def _invalid_texts(root: Element, children: _Children) -> Iterator[_Refusal]:
 
 
 def _invalid_names(element: Element) -> Iterator[_Refusal]:
-    if not _NAME.fullmatch(text_of(element)):
-        yield f'Package name "{text_of(element)}" does not follow naming conventions', element
+    if not _NAME.fullmatch(read_text(element)):
+        yield f'Package name "{read_text(element)}" does not follow naming conventions', element
 
 
 def _invalid_versions(element: Element) -> Iterator[_Refusal]:
-    version, compatibility = text_of(element), element.get("compatibility")
+    version, compatibility = read_text(element), element.get("compatibility")
     if not version:
         yield "Package version must not be empty", element
     elif not _VERSION.fullmatch(version):
@@ -220,29 +220,29 @@ def _invalid_versions(element: Element) -> Iterator[_Refusal]:
 
 
 def _invalid_emails(person: Element) -> Iterator[_Refusal]:
-    email, tag = person.get("email"), tag_of(person)
+    email, tag = person.get("email"), read_tag(person)
     if email is None and tag == "maintainer":
         yield 'The "maintainer" tag must have the attribute "email"', person
-    elif email is not None and not _EMAIL.fullmatch(email_of(person)):
-        yield f'Invalid email "{email}" for person "{text_of(person)}"', person
+    elif email is not None and not _EMAIL.fullmatch(read_email(person)):
+        yield f'Invalid email "{email}" for person "{read_text(person)}"', person
 
 
 def _own_dependencies(children: _Children, version: int) -> Iterator[_Refusal]:
     """Yield the dependencies of a package on itself, and on a group that it is a member of."""
-    names = {text_of(element) for element in children.get("name", ())}
+    names = {read_text(element) for element in children.get("name", ())}
     for tag in _tags_of_dependencies(version):
         if tag in ("conflict", "replace"):
             continue
         for element in children.get(tag, ()):
-            if text_of(element) in names:
+            if read_text(element) in names:
                 kinds = enumerated([f'"{kind}"' for kind in _STANDS_FOR.get(tag, (tag,))])
                 yield (
                     f"The package must not {kinds} on a package with the same name as this package",
                     element,
                 )
-    groups = {text_of(element) for element in children.get("member_of_group", ())}
+    groups = {read_text(element) for element in children.get("member_of_group", ())}
     for element in children.get("group_depend", ()):
-        if text_of(element) in groups:
+        if read_text(element) in groups:
             words = (
                 "The package must not 'group_depend' on a package which it also declares to be "
                 "a member of"

@@ -34,7 +34,7 @@ from grader.ros.python.budget import Budget
 from grader.ros.python.evaluation import Evaluation, PythonError
 from grader.ros.python.interpreter import Interpreter
 from grader.ros.python.library import MAX_PATH, PACKAGE_FOLDER, standard_functions
-from grader.ros.python.parse import START, Code, Position, SyntaxFault, parse, position_of
+from grader.ros.python.parse import START, Code, Position, SyntaxFault, make_position, parse
 from grader.ros.python.values import (
     PLAIN,
     SCALARS,
@@ -203,7 +203,7 @@ def read_setup(
         if isinstance(node, ast.Constant) and isinstance(node.value, str)
     ]
     written = {
-        str(node.value): position_of(node) for node in reversed(strings)
+        str(node.value): make_position(node) for node in reversed(strings)
     }  # the first of several counts
     listing = PackageListing(tree, budget, ORDERS[0])
     setups = [_evaluate_setup(code, listing, written, "setup.py")]

@@ -375,14 +375,14 @@ def _check_integer(kind: FieldType, text: str) -> None:
     number = _integer(text, 10)
     if number is None:
         number = _integer(text, 0)
-    smallest, largest = _range_of(kind.name)
+    smallest, largest = _compute_range(kind.name)
     if number is None or not smallest <= number <= largest:
         raise _Wrong(
             f"{text!r} is no {kind.name}, a whole number from {smallest} to {largest}", text
         )
 
 
-def _range_of(name: str) -> tuple[int, int]:
+def _compute_range(name: str) -> tuple[int, int]:
     """Return the smallest and the largest value of a type of whole numbers."""
     if name in ("byte", "char"):
         return 0, 255

@@ -57,7 +57,7 @@ def packages_with(key: IndexedKey) -> list[str]:
 
 def facts_in_file(package: str) -> dict[str, Any]:
     """Return the facts at the start of the file of a package that has one."""
-    return tomli.loads(split_facts(_text_of(package))[0])
+    return tomli.loads(split_facts(_read_text(package))[0])
 
 
 def tables_in_file(package: str) -> Mapping[str, Any]:
@@ -67,10 +67,10 @@ def tables_in_file(package: str) -> Mapping[str, Any]:
 
 @cache
 def _read_tables(package: str) -> Mapping[str, Any]:
-    return tomli.loads(split_facts(_text_of(package))[1])
+    return tomli.loads(split_facts(_read_text(package))[1])
 
 
-def _text_of(package: str) -> str:
+def _read_text(package: str) -> str:
     return (FOLDER / f"{package}{_ENDING}").read_text("utf-8")
 
 

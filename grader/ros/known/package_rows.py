@@ -209,7 +209,7 @@ def is_known_controller(kind: str | None) -> bool:
     return controller_row(kind) is not _NO_CONTROLLER
 
 
-def transforms_of(owner: str) -> tuple[_TransformRow, ...]:
+def find_transforms(owner: str) -> tuple[_TransformRow, ...]:
     """Return the transforms that a program or a type of controllers publishes."""
     package, _, name = owner.partition("/")
     return program_row(package, name).transforms or controller_row(owner).transforms
@@ -328,7 +328,7 @@ def is_known_package(name: str) -> bool:
     return package_row(name).is_named or name in _members()
 
 
-def programs_of(package: str) -> tuple[str, ...]:
+def find_programs(package: str) -> tuple[str, ...]:
     """Return the programs of a package that is installed with ROS 2, if all are known."""
     row = package_row(package)
     return (row.programs or ()) if row.is_installed else ()

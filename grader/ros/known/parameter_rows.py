@@ -66,7 +66,7 @@ class ParameterRow(NamedTuple):
     @property
     def pattern(self) -> re.Pattern[str]:
         """The names that it stands for; its groups are the parts in angle brackets."""
-        return _pattern_of(self.name)
+        return _make_pattern(self.name)
 
     @property
     def places(self) -> Sequence[str]:
@@ -102,7 +102,7 @@ class NodeRows(NamedTuple):
     @property
     def own_rows(self) -> tuple[ParameterRow, ...]:
         """The rows that no other node has before it."""
-        table = _table_of(self.node)
+        table = _find_table(self.node)
         parameters = table.parameters if table is not None else {}
         return tuple(row for row in self.rows if row.name in parameters)
 
@@ -133,7 +133,7 @@ class NodeTable(NamedTuple):
     parameters: Mapping[str, Any] = {}
 
 
-def rows_of(node: str, release: Release | None = None) -> tuple[ParameterRow, ...]:
+def find_rows(node: str, release: Release | None = None) -> tuple[ParameterRow, ...]:
     """Return the parameters of a node in a release, or in any; none for a node that is not known.
 
     Args:
@@ -151,7 +151,7 @@ def row_for(node: str, parameter: str, release: Release | None = None) -> Parame
 
     The result is None without one.
     """
-    rows = rows_of(node, release)
+    rows = find_rows(node, release)
     for row in rows[::-1]:
         if row.pattern.fullmatch(parameter) is not None:
             return row
@@ -189,7 +189,7 @@ def node_called(name: str) -> str | None:
 @cache
 def node_rows(node: str) -> NodeRows | None:
     """Return the rows of a node, with those of what it is made of; None for one without rows."""
-    table = _table_of(node)
+    table = _find_table(node)
     if table is None:
         return None
     rows = [*read_rows(table.parameters)]
@@ -213,7 +213,7 @@ def node_rows(node: str) -> NodeRows | None:
     )
 
 
-def _table_of(node: str) -> NodeTable | None:
+def _find_table(node: str) -> NodeTable | None:
     table = tables_in_file(_SEPARATOR.split(node)[0]).get(node)
     return read_row(NodeTable, table) if table is not None else None
 
@@ -227,7 +227,7 @@ def read_rows(parameters: Mapping[str, Any]) -> Iterator[ParameterRow]:
 
 
 @cache
-def _pattern_of(name: str) -> re.Pattern[str]:
+def _make_pattern(name: str) -> re.Pattern[str]:
     parts: list[str] = []
     for number, part in enumerate(_PLACE.split(name)):
         if number % 2 == 0:

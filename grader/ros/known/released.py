@@ -30,7 +30,7 @@ class _ReleasedTable(NamedTuple):
 @cache
 def _table() -> _ReleasedTable:
     data = json.loads(lzma.decompress(RELEASED_FILE.read_bytes()))
-    releases_of: dict[str, frozenset[Release]] = {}
+    releases_by_name: dict[str, frozenset[Release]] = {}
     repositories: dict[str, str] = {}
     by_repository: dict[str, frozenset[str]] = {}
     for repository, groups in data["repositories"].items():
@@ -38,13 +38,13 @@ def _table() -> _ReleasedTable:
         for words, group in groups.items():
             releases = frozenset(release for release in RELEASES if release in words.split())
             for name in group.split():
-                releases_of[name], repositories[name] = releases, repository
+                releases_by_name[name], repositories[name] = releases, repository
                 names.add(name)
         by_repository[repository] = frozenset(names)
     metapackages = frozenset(data["metapackages"].split())
     rosdep = frozenset(data["rosdep"].split())
     return _ReleasedTable(
-        data["date"], releases_of, repositories, metapackages, by_repository, rosdep
+        data["date"], releases_by_name, repositories, metapackages, by_repository, rosdep
     )
 
 
@@ -63,10 +63,10 @@ def is_released(name: str, releases: Collection[Release] = ()) -> bool:
     return bool(having) and (not releases or not having.isdisjoint(releases))
 
 
-def releases_of(name: str) -> tuple[Release, ...]:
+def find_releases(name: str) -> tuple[Release, ...]:
     """Return the releases for which a package is released, in their order.
 
-    >>> releases_of("ros_ign_bridge")
+    >>> find_releases("ros_ign_bridge")
     ('foxy', 'galactic', 'humble', 'iron')
     """
     having = _table().releases.get(name, frozenset())

@@ -78,7 +78,7 @@ class _ReleaseName(NamedTuple):
         """Return whether a release has it."""
         return self.first <= RELEASES.index(release) <= self.last
 
-    def in_place_of(self, other: "_ReleaseName", name: str) -> str:
+    def replace_name(self, other: "_ReleaseName", name: str) -> str:
         """Return what a name, which matches another one of the row, is here."""
         start = self.name.removesuffix("*")
         if start == self.name:
@@ -115,7 +115,7 @@ def other_name(
     here = name.removeprefix(shown)
     for meant in row:
         if meant.is_in(release):
-            there = meant.in_place_of(named_row, name).removeprefix(shown)
+            there = meant.replace_name(named_row, name).removeprefix(shown)
             return _renamed(named_row, meant, here, there, is_later=is_later)
     if is_later:
         next_one = RELEASES[named_row.last + 1].title()

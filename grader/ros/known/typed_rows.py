@@ -30,7 +30,7 @@ def read_row(kind: Callable[..., _Row], table: Mapping[str, Any]) -> _Row:
         Traceback (most recent call last):
         ValueError: a Wheel has no 'raduis'
     """
-    readings = _readings_of(kind)
+    readings = _list_readings(kind)
     values: dict[str, Any] = {}
     for key, value in table.items():
         if key not in readings:
@@ -53,21 +53,21 @@ def read_file(kind: Callable[..., _Row], name: str) -> _Row:
 
 def read_typed(hint: Any, value: Any) -> Any:
     """Return a value of TOML as the type of an annotation has it. Raises ValueError."""
-    return _reading_of(hint)(value)
+    return _choose_reading(hint)(value)
 
 
 @cache
-def _readings_of(kind: Callable[..., Any]) -> Mapping[str, _Reading]:
-    return {name: _reading_of(hint) for name, hint in kind.__annotations__.items()}
+def _list_readings(kind: Callable[..., Any]) -> Mapping[str, _Reading]:
+    return {name: _choose_reading(hint) for name, hint in kind.__annotations__.items()}
 
 
 @cache
-def _reading_of(hint: Any) -> _Reading:
+def _choose_reading(hint: Any) -> _Reading:
     """Return the function that reads values of a type."""
     origin, arguments = get_origin(hint), get_args(hint)
     if origin is UnionType:
         [hint] = [argument for argument in arguments if argument is not NoneType]
-        return _reading_of(hint)
+        return _choose_reading(hint)
     if origin in _COLLECTIONS:
         return _COLLECTIONS[origin](arguments)
     if hasattr(hint, "_fields"):
@@ -75,17 +75,17 @@ def _reading_of(hint: Any) -> _Reading:
     return partial(_read_plain, hint, arguments)
 
 
-def _items_of(arguments: Sequence[Any]) -> _Reading:
-    read_item = _reading_of(arguments[0])
+def _choose_items(arguments: Sequence[Any]) -> _Reading:
+    read_item = _choose_reading(arguments[0])
     return lambda items: tuple(map(read_item, _checked(items, list)))
 
 
-def _words_of(_: Sequence[Any]) -> _Reading:
+def _choose_words(_: Sequence[Any]) -> _Reading:
     return lambda words: frozenset(_checked(words, str).split())
 
 
-def _table_of(arguments: Sequence[Any]) -> _Reading:
-    read_value = _reading_of(arguments[1])
+def _choose_table(arguments: Sequence[Any]) -> _Reading:
+    read_value = _choose_reading(arguments[1])
     return lambda table: {key: read_value(value) for key, value in _checked(table, dict).items()}
 
 
@@ -96,9 +96,9 @@ def _checked(value: Any, kind: type) -> Any:
 
 
 _COLLECTIONS: Mapping[Any, Callable[[Sequence[Any]], _Reading]] = {
-    tuple: _items_of,
-    frozenset: _words_of,
-    Mapping: _table_of,
+    tuple: _choose_items,
+    frozenset: _choose_words,
+    Mapping: _choose_table,
 }
 
 

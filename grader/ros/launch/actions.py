@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from grader.ros.installation.places import PREFIX, SHARE
-from grader.ros.launch.call_arguments import items_in, kind_of
+from grader.ros.launch.call_arguments import describe_kind, items_in
 from grader.ros.launch.components import load_by_command, load_components, start_container
 from grader.ros.launch.launch_classes import CONDITION, ENTITY, SOURCE, class_named, is_a
 from grader.ros.launch.launch_model import (
@@ -156,7 +156,7 @@ class ActionVisitor:
                 raise Undetermined(f"the result of {value.name} is not evaluated", value.at)
             if not isinstance(value, Call) or not is_a(value.name, ENTITY):
                 hint = ": write * before it" if isinstance(value, list | tuple) else ""
-                raise EvaluationFails(f"expected an action, found {kind_of(value)}{hint}", at)
+                raise EvaluationFails(f"expected an action, found {describe_kind(value)}{hint}", at)
         except EvaluationSignal as signal:
             self.add_form(signal, at, when)
         else:
@@ -241,7 +241,7 @@ class ActionVisitor:
             self.add_form(signal, call.at, when)
             return
         if items is None:
-            error = EvaluationFails(f"expected a list of actions, found {kind_of(actions)}")
+            error = EvaluationFails(f"expected a list of actions, found {describe_kind(actions)}")
             self.findings.add(error, call.at, when)
         for action in items or ():
             self.visit(action, context, when, call.at)
@@ -269,7 +269,7 @@ def _condition_holds(given: Value, context: Context, at: Position) -> bool:
         raise given.as_signal(given.at)
     if not isinstance(given, Call):
         raise EvaluationFails(
-            f"condition is {kind_of(given)}, not a condition such as IfCondition(...)", at
+            f"condition is {describe_kind(given)}, not a condition such as IfCondition(...)", at
         )
     kind = given.short
     if not is_a(given.name, CONDITION) or kind not in CONDITIONS:
@@ -567,7 +567,7 @@ def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str,
         for item in pair:
             if not isinstance(item, str | Call | Unknown | list | tuple):
                 raise EvaluationFails(
-                    f"the value of a launch argument is {kind_of(item)}, not a string", at
+                    f"the value of a launch argument is {describe_kind(item)}, not a string", at
                 )
         arguments[known_text(pair[0], context, at)] = resolve(pair[1], context, at)
     return arguments

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from grader.base import markup
 from grader.base.source import Source
-from grader.ros.python.parse import Code, location_in, parse, position_of
+from grader.ros.python.parse import Code, location_in, make_position, parse
 from grader.ros.python.walking import walk
 from grader.ros.xml.parsing import XmlFault, XmlFile
 
@@ -79,7 +79,7 @@ def _span_of_text(source: Source, value: ast.expr) -> tuple[int, int] | None:
     """Return the offsets of a text without its quotes; None for what is no plain text."""
     if not isinstance(value, ast.Constant) or not isinstance(value.value, str):
         return None
-    at = location_in(source, position_of(value))
+    at = location_in(source, make_position(value))
     opened = _OPENING.match(source.text, source.start_offset(at))
     if opened is None:
         return None

@@ -27,7 +27,7 @@ from grader.ros.launch.launch_classes import (
 from grader.ros.launch.launch_model import UnknownText, not_evaluated
 from grader.ros.launch.substitutions import CONDITIONS, PERFORMS, listed
 from grader.ros.python.evaluation import Evaluation, record
-from grader.ros.python.parse import position_of
+from grader.ros.python.parse import make_position
 from grader.ros.python.values import (
     VIEWS,
     BoundMethod,
@@ -261,7 +261,7 @@ def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> st
     """
     if bound := _find_bound(value):
         text = unparse(bound)[:60]
-        raise EvaluationFails(f"{text} without (): write {text}()", position_of(bound))
+        raise EvaluationFails(f"{text} without (): write {text}()", make_position(bound))
     if not name:
         message = _SPECIAL[cls.short](call) if cls.short in _SPECIAL else ""
         return f"{cls.short}: {message}" if message else ""
@@ -274,7 +274,7 @@ def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> st
         return ""
     if fault.is_of_part:
         return f"{name} of {cls.short} {fault.message}"
-    return f"{name} of {cls.short} {fault.message}, not {kind_of(value)}"
+    return f"{name} of {cls.short} {fault.message}, not {describe_kind(value)}"
 
 
 def _find_bound(value: Value) -> expr | None:
@@ -337,14 +337,14 @@ def _wrong_text(value: Value) -> _Fault | None:
 def _wrong_in(item: Value) -> _Fault:
     """Return what is wrong with a list that has an item which is no text."""
     hint = f": write '{item}'" if type(item) in (int, float) else ""
-    return _Fault(f"has an item that is {kind_of(item)}{hint}", is_of_part=True)
+    return _Fault(f"has an item that is {describe_kind(item)}{hint}", is_of_part=True)
 
 
 def _first_fault(faults: Iterable[_Fault | None]) -> _Fault | None:
     return next((fault for fault in faults if fault is not None), None)
 
 
-def kind_of(value: Value) -> str:
+def describe_kind(value: Value) -> str:
     """Return what a value is, in words."""
     if isinstance(value, Call):
         return OPENED.get(value.name, f"{value.short}(...)")
@@ -410,28 +410,28 @@ def _wrong_parameter(value: Value) -> _Fault | None:
     is_right = is_right or (isinstance(value, Call) and value.name in TYPED)
     if is_right or (not isinstance(value, PurePosixPath) and _is_text(value)):
         return None
-    return _Fault(f"has a value that is {kind_of(value)}", is_of_part=True)
+    return _Fault(f"has a value that is {describe_kind(value)}", is_of_part=True)
 
 
 def _wrong_typed(call: Call) -> str:
     """Return what is wrong with the value of ParameterValue, or nothing. Raises Undetermined."""
-    value, kind = call.kwargs["value"], type_of(call)
+    value, kind = call.kwargs["value"], read_type(call)
     if isinstance(value, UnknownText):
         return "" if kind in (None, str) else "the value is a text"
     if isinstance(value, SCALARS):
         if kind is None or isinstance(value, kind):
             return ""
-        return f"the value is {kind_of(value)}, not {kind.__name__}"
+        return f"the value is {describe_kind(value)}, not {kind.__name__}"
     if isinstance(value, list | tuple) and not any(
         isinstance(element, Call | Unknown) for element in value
     ):
         is_wrong = kind is not None or not all(isinstance(element, SCALARS) for element in value)
-        return f"the value is {kind_of(value)}" if is_wrong else ""
+        return f"the value is {describe_kind(value)}" if is_wrong else ""
     fault = _wrong_text(value)
     return fault.message if fault is not None else ""
 
 
-def type_of(call: Call) -> "type | None":
+def read_type(call: Call) -> "type | None":
     """Return the type that ParameterValue is given; None for none.
 
     Raises Undetermined for the type of a list.
@@ -533,7 +533,7 @@ def _wrong_include(call: Call) -> str:
     if not (isinstance(source, Call) and is_a(source.name, SOURCE)):
         fault = _wrong_text(source)
         if fault is not None:
-            return f"the first argument {fault.message}, not {kind_of(source)}"
+            return f"the first argument {fault.message}, not {describe_kind(source)}"
     if isinstance(given, dict) and not all(isinstance(key, str) and len(key) == 2 for key in given):
         # Python takes a key of two letters for a pair
         return "launch_arguments is given a dict: add .items() to it"
@@ -559,7 +559,7 @@ def _wrong_event_handler(call: Call) -> str:
     ):
         raise Undetermined("what this event handler executes")
     if isinstance(target, str | list | dict | int | float):
-        return f"target_action is {kind_of(target)}, not an action such as Node(...)"
+        return f"target_action is {describe_kind(target)}, not an action such as Node(...)"
     if not isinstance(target, Call | None) or (
         target is not None and not is_a(target.name, PROCESS)
     ):
@@ -578,7 +578,7 @@ def _wrong_text_substitution(call: Call) -> str:
     text = call.kwargs["text"]
     if isinstance(text, str) or (_is_text(text) and not isinstance(text, Call)):
         return ""
-    return f"text is {kind_of(text)}"
+    return f"text is {describe_kind(text)}"
 
 
 def _wrong_timer(call: Call) -> str:

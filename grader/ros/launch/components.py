@@ -94,11 +94,11 @@ def _with_options(node: StartedNode, options: list[str]) -> StartedNode | None:
     given = _words_by_option(options)
     if given is None:
         return None
-    rules = remap_rules(_words_of(given, _REMAP))
-    parameters = parameters_in_words(_words_of(given, _PARAMETER), node.location)
+    rules = remap_rules(_list_option_words(given, _REMAP))
+    parameters = parameters_in_words(_list_option_words(given, _PARAMETER), node.location)
     return node._replace(
-        node_name=(_words_of(given, _NAME) or [""])[-1],
-        namespace=(_words_of(given, _BELOW) or [""])[-1],
+        node_name=(_list_option_words(given, _NAME) or [""])[-1],
+        namespace=(_list_option_words(given, _BELOW) or [""])[-1],
         remaps=tuple((old, new) for old, _, new in rules),
         parameters=tuple(parameters),
         arguments=(),
@@ -117,7 +117,7 @@ def _words_by_option(options: list[str]) -> dict[str, list[str]] | None:
     return given
 
 
-def _words_of(given: Mapping[str, Sequence[str]], options: Sequence[str]) -> list[str]:
+def _list_option_words(given: Mapping[str, Sequence[str]], options: Sequence[str]) -> list[str]:
     """Return the words behind some options, each behind the first of these."""
     words: list[str] = []
     for option in options:

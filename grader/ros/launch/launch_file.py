@@ -21,7 +21,7 @@ from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.installation.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.ros.known.releases import Release
 from grader.ros.launch.actions import ActionVisitor, Include, NotIncluded
-from grader.ros.launch.call_arguments import LaunchFunctions, join_path, kind_of
+from grader.ros.launch.call_arguments import LaunchFunctions, describe_kind, join_path
 from grader.ros.launch.launch_classes import (
     DESCRIPTION,
     JOINED_PATH,
@@ -319,7 +319,9 @@ def _description_error(value: Value) -> str:
         case Call() if is_a(value.name, DESCRIPTION):
             return ""
         case _:
-            return f"{_ENTRY} does not return a LaunchDescription([...]), but {kind_of(value)}"
+            return (
+                f"{_ENTRY} does not return a LaunchDescription([...]), but {describe_kind(value)}"
+            )
 
 
 def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
@@ -341,7 +343,7 @@ def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNod
     return Launch(
         source=source,
         nodes=tuple(findings.nodes),
-        references=tuple(dict.fromkeys(_references_of(findings))),
+        references=tuple(dict.fromkeys(_list_references(findings))),
         faults=tuple(sorted(set(findings.faults), key=ORDER)),
         unknown=tuple(dict.fromkeys(findings.unknown)),
         doubts=tuple(dict.fromkeys(findings.doubts)),
@@ -356,7 +358,7 @@ def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNod
     )
 
 
-def _references_of(findings: Findings) -> list[NamedFile]:
+def _list_references(findings: Findings) -> list[NamedFile]:
     """Return the files that are named, each that is read and used only for its use."""
     named = set()
     for reference in findings.references:
@@ -510,7 +512,7 @@ class _PythonLaunchFile:
         if isinstance(given, Call) and given.name == "builtins.open":
             given = self._text(evaluation, Call("builtins.open.read", [], {}, call.at, given))
         if isinstance(given, FileText) and given.contents.by == "open":
-            given = self.context.text_of(given.contents.path)
+            given = self.context.find_text(given.contents.path)
         text = known(given)
         if not isinstance(text, str) or len(text) > MAX_TEXT or "<<" in text:
             raise Undetermined("what yaml reads is not evaluated")
@@ -560,7 +562,7 @@ class _PythonLaunchFile:
             return record(evaluation, call)
         if mode not in (None, "r", "rt") or not is_utf8 or others or len(call.args) > 2:
             raise Undetermined("this use of open is not evaluated", call.at, is_final=True)
-        if evaluation.attempts and self.context.text_of(path) is None:
+        if evaluation.attempts and self.context.find_text(path) is None:
             raise Undetermined(
                 "whether the file of this try is there is not evaluated", call.at, is_final=True
             )
@@ -597,7 +599,7 @@ class _PythonLaunchFile:
 
     def _exists(self, _: Evaluation, call: Call) -> Value:
         path = path_text(known(call.args[0])) or ""
-        is_there = self.context.text_of(path) is not None
+        is_there = self.context.find_text(path) is not None
         if is_there:
             return True
         return Unknown(f"whether {posixpath.basename(path)} exists is not evaluated", call.at)

@@ -146,7 +146,7 @@ class Context:
         """Return a context whose launch configurations change on their own."""
         return replace(self, arguments=dict(self.arguments), to_all=dict(self.to_all))
 
-    def text_of(self, path: str) -> str | None:
+    def find_text(self, path: str) -> str | None:
         """Return the text of a file.
 
         Returns None for one that is not installed below the prefix, or is no text.
@@ -392,7 +392,7 @@ class Launch(NamedTuple):
             return ""
         return "a launch file cannot be read"
 
-    def frames_of(self, link: str) -> tuple[str | None, ...]:
+    def list_frames(self, link: str) -> tuple[str | None, ...]:
         """Return the frames of a link that robot_state_publisher publishes.
 
         A rubric may prefix them. Returns None if they are unknown.

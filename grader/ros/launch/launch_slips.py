@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from grader.base.names import closest, near
 from grader.base.slips import Slip
 from grader.ros.known.package_files import packages_with_files
-from grader.ros.known.package_rows import lacks_program, package_row, programs_of
+from grader.ros.known.package_rows import find_programs, lacks_program, package_row
 from grader.ros.known.python_names import python_names
 from grader.ros.launch.launch_classes import class_named, exports
 from grader.ros.python.bindings import bound_names
@@ -131,13 +131,15 @@ class _LaunchNames:
             return
         package, program = str(given["package"].value), str(given["executable"].value)
         if package_row(package).is_installed:
-            meant = near(program, programs_of(package)) if lacks_program(package, program) else None
+            meant = (
+                near(program, find_programs(package)) if lacks_program(package, program) else None
+            )
             if meant is not None:
                 reaction = f"the package {package} has no program {program!r}"
                 yield read_as(self._code, given["executable"], program, meant, reaction)
             return
         meant = near(package, packages_with_files())
-        if meant is not None and program in programs_of(meant):
+        if meant is not None and program in find_programs(meant):
             reaction = f"ROS 2 has no package {package!r}"
             yield read_as(self._code, given["package"], package, meant, reaction)
 

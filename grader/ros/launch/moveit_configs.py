@@ -279,7 +279,7 @@ class MoveItConfigurations:
         )
 
     def _is_there(self, path: str) -> bool:
-        return self.context().text_of(path) is not None
+        return self.context().find_text(path) is not None
 
     def _read(self, path: str, at: Position, by: str, arguments: Any = ()) -> Contents:
         contents = Contents(path, by, arguments)
@@ -479,7 +479,7 @@ class MoveItConfigurations:
         elif name == "generate_static_virtual_joint_tfs_launch":
             srdf = next(iter(configs.find("robot_description_semantic").values()))
             if isinstance(srdf, FileText):
-                text = self.context().text_of(srdf.contents.path)
+                text = self.context().find_text(srdf.contents.path)
             else:
                 text = None
             if text is None or "xacro:" in text:

@@ -17,7 +17,14 @@ from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml,
 from grader.ros.config.yaml_values import is_misspelt_key
 from grader.ros.installation.places import PREFIX
 from grader.ros.known.package_rows import program_row
-from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, kind_of, type_of
+from grader.ros.launch.call_arguments import (
+    FILE,
+    SCALARS,
+    TYPED,
+    describe_kind,
+    items_in,
+    read_type,
+)
 from grader.ros.launch.launch_model import (
     NAMESPACE,
     Contents,
@@ -139,7 +146,7 @@ def _read_file(call: Call, place: _Place) -> _Read:
     """Yield the file of a ParameterFile. Raises EvaluationSignal."""
     path = _resolve_path(call, place.context)
     is_plain = call.kwargs.get("allow_substs") in (None, False)
-    text = place.context.text_of(path) if isinstance(path, str) else None
+    text = place.context.find_text(path) if isinstance(path, str) else None
     if not is_plain and (text is None or _SUBSTITUTION in text):
         yield Undetermined("substitutions in a parameter file are not evaluated", call.at)
     yield _make_file(path, place, is_plain=is_plain)
@@ -245,7 +252,7 @@ def _evaluate_typed(call: Call, context: Context) -> Any:
     ):
         return value
     try:
-        kind = type_of(call)
+        kind = read_type(call)
     except Undetermined as error:
         raise Undetermined(f"{error} is not evaluated", call.at) from None
     if kind is None:
@@ -272,7 +279,8 @@ def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> An
     ):
         hint = "write ParameterValue(..., value_type=str)"
         raise EvaluationFails(
-            f"the parameter {name!r} is read as YAML, and is {kind_of(loaded)} then: {hint}", at
+            f"the parameter {name!r} is read as YAML, and is {describe_kind(loaded)} then: {hint}",
+            at,
         )
     return loaded
 
@@ -284,7 +292,7 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
         raise Undetermined(
             f"the value of the parameter {name!r} is not evaluated: {resolved.reason}", at
         )
-    text = context.text_of(resolved.path) if isinstance(resolved, Contents) else resolved
+    text = context.find_text(resolved.path) if isinstance(resolved, Contents) else resolved
     if text is None:
         return ""  # a file that is not there is reported for itself
     try:
@@ -528,7 +536,7 @@ def _make_table(key: str | None, values: Mapping[str, ParameterValue]) -> _Table
     return _Table(key, known, opened)
 
 
-def parameters_of(
+def collect_parameters(
     node: StartedNode, open_file: _OpenFile, name: str = "", read: _ReadFile = read_tables
 ) -> NodeParameters:
     """Return the parameters that a node gets from a launch file, and where each is written.
@@ -678,7 +686,7 @@ def _select_values(
     """
     if full is None:
         return _select_for_any_name(by_key)
-    return _merge(values for key, values in by_key.items() if is_key_of(key, full))
+    return _merge(values for key, values in by_key.items() if is_section_key(key, full))
 
 
 def _select_for_any_name(
@@ -701,7 +709,7 @@ def _merge(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, Paramete
     return merged
 
 
-def is_key_of(key: str | None, full: str) -> bool:
+def is_section_key(key: str | None, full: str) -> bool:
     """Return whether the key of a section names a node by its full name.
 
     `*` stands for one name, `**` for any number of them. The keys of what a launch file gives are
@@ -727,7 +735,7 @@ def remap_rules(words: Sequence[str]) -> list[tuple[str, str, str]]:
     return [word.partition(":=") for option, word in pairwise(words) if option in ("-r", "--remap")]
 
 
-def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
+def list_controllers(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
     """Return the controllers that a spawner starts, as nodes.
 
     The nodes have the files and remappings that it gives them.

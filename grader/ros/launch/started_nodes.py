@@ -32,7 +32,7 @@ from grader.ros.launch.launch_model import (
 )
 from grader.ros.launch.node_parameters import (
     TO_ALL,
-    controllers_of,
+    list_controllers,
     parameters_in_words,
     remap_rules,
 )
@@ -135,7 +135,7 @@ def _add_unknown_program(
 
 def _refer_controllers(spawner: StartedNode, findings: Findings, call: Call) -> None:
     """Add the files of parameters that the controllers of a spawner are given."""
-    for controller in controllers_of(spawner) or ():
+    for controller in list_controllers(spawner) or ():
         for given in controller.parameters or ():
             findings.refer("parameters", given.path, call)
 
@@ -265,15 +265,15 @@ def ends_by_itself(action: Value, context: Context) -> bool:
         return False
     if words[:2] == ["ros2", "run"] and len(words) > 3:
         options = program_row(words[2], words[3]).ends_unless
-        return options is not None and _has_none_of(words, options)
+        return options is not None and _lacks_options(words, options)
     for command, options in ros_machine().ending_commands.items():
         first = command.split()
         if words[: len(first)] == first:
-            return _has_none_of(words, options)
+            return _lacks_options(words, options)
     return False
 
 
-def _has_none_of(words: Sequence[str], options: Sequence[str]) -> bool:
+def _lacks_options(words: Sequence[str], options: Sequence[str]) -> bool:
     """Return whether a command certainly has none of some options."""
     return not options or {PART_UNKNOWN, *options}.isdisjoint(words)
 
@@ -451,7 +451,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
         return
     match text := _text_if_known(value, context, call.at):
         case Contents(path=path, by=by) if (
-            by != "xacro" and path.endswith(".xacro") and context.text_of(path) is None
+            by != "xacro" and path.endswith(".xacro") and context.find_text(path) is None
         ):
             name = path.rpartition("/")[2]
             message = (

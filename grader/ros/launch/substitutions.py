@@ -12,7 +12,7 @@ from pathlib import PurePosixPath
 from grader.base.text import enumerated
 from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.installation.places import HOME, PREFIX, SHARE
-from grader.ros.known.package_rows import package_row, programs_of
+from grader.ros.known.package_rows import find_programs, package_row
 from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import RELEASES
 from grader.ros.launch.launch_model import Contents, Context, FileText, Resolved
@@ -30,7 +30,7 @@ from grader.ros.python.values import (
     Undetermined,
     Unknown,
     Value,
-    str_of,
+    charge_str,
 )
 
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
@@ -339,7 +339,7 @@ def check_program(package: str, name: str, context: Context, at: Position) -> No
     if is_there is None:
         raise Undetermined(f"whether {package!r} has the program {name!r} is not evaluated", at)
     if not is_there:
-        others = enumerated(programs_of(package)) or "none"
+        others = enumerated(find_programs(package)) or "none"
         manifest = context.machine.open_installed(f"share/{package}/package.xml")
         listed = "console_scripts of setup.py, and install_scripts of setup.cfg"
         if manifest is not None and _OF_CMAKE in manifest[0]:
@@ -388,7 +388,7 @@ def _expression_text(text: str, at: Position, context: Context) -> str:
     """Return the value of a PythonExpression as a text. Raises EvaluationSignal."""
     budget = Budget(_WORK, whole=context.budget.whole)
     try:
-        return str_of(evaluate(text, _find_name, budget))
+        return charge_str(evaluate(text, _find_name, budget))
     except EvaluationFails as error:
         raise EvaluationFails(f"the expression {text[:60]!r} fails: {error}", at) from None
     except (Undetermined, OutOfBudget) as error:

@@ -15,14 +15,14 @@ from typing import NamedTuple
 from grader.base.source import Location, Source
 from grader.ros.nodes.node_facts import FieldUse, TypeImport
 from grader.ros.python.bindings import names_bound
-from grader.ros.python.constants import dotted, last_name, offset_of
+from grader.ros.python.constants import dotted, last_name, make_order
 from grader.ros.python.parse import (
     AnyFunction,
     Code,
     Position,
     every_node,
     location_in,
-    position_of,
+    make_position,
 )
 from grader.ros.python.values import SCALARS, QualifiedName, Scope, Value
 from grader.ros.python.walking import children, walk
@@ -88,7 +88,7 @@ def type_imports(tree: ast.Module, source: Source) -> Iterator[TypeImport]:
                 _, _, kind = module.partition(".")
                 for alias in names if kind in _KINDS and module != "rclpy.action" else ():
                     if alias.name != "*":
-                        at = location_in(source, position_of(alias))
+                        at = location_in(source, make_position(alias))
                         yield TypeImport(f"{module}.{alias.name}", at)
             case ast.FunctionDef(body=body) | ast.AsyncFunctionDef(body=body):
                 pending += body
@@ -250,7 +250,7 @@ class _FunctionUses:
     ) -> None:
         """`given` are the types of the arguments after self."""
         self._evaluate = evaluate
-        self._nodes = sorted(certain_nodes(function), key=offset_of)
+        self._nodes = sorted(certain_nodes(function), key=make_order)
         self._counts = Counter[str]()
         for node in walk(function):
             match node:
@@ -283,9 +283,9 @@ class _FunctionUses:
                     ast.Assign(targets=[target], value=value)
                     | ast.AnnAssign(target=target, value=ast.expr() as value)
                 ):
-                    typed = self._type_of(value)
+                    typed = self._find_type(value)
                 case ast.For(target=target, iter=items):
-                    listed = self._type_of(items)
+                    listed = self._find_type(items)
                     typed = listed and listed._replace(path=(*listed.path, ITEM))
                 case _:
                     continue
@@ -306,7 +306,7 @@ class _FunctionUses:
             if self._counts[name] == 0 and name not in self._asked:
                 self._types[name] = typed
 
-    def _type_of(self, node: ast.expr) -> _Typed | None:
+    def _find_type(self, node: ast.expr) -> _Typed | None:
         """Return what an expression is; None where this is not certain."""
         path: list[str] = []
         while len(path) < _MAX_PATH:
@@ -344,7 +344,7 @@ class _FunctionUses:
         self, node: ast.Attribute, literal: tuple[Value, ...]
     ) -> Iterator[_PlacedUse]:
         """Yield the use of a field, or of a constant, that an attribute is."""
-        typed = self._type_of(node.value)
+        typed = self._find_type(node.value)
         if typed is None and node.attr.isupper() and dotted(node.value):
             kind = _interface_name(self._evaluate(node.value))  # a constant of a type
             typed = _Typed(kind) if kind is not None else None
@@ -362,7 +362,7 @@ class _FunctionUses:
             return
         for keyword in call.keywords:
             if keyword.arg not in (None, "check_fields"):
-                at, literal = position_of(keyword), self._literal(keyword.value)
+                at, literal = make_position(keyword), self._literal(keyword.value)
                 yield _PlacedUse(kind, (keyword.arg or "",), at, literal)
 
     def _literal(self, node: ast.expr) -> tuple[Value, ...]:

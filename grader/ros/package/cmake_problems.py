@@ -61,7 +61,7 @@ def _target_problems(
 
 def _not_installed(package: Package, setup: Installation, target: CmakeTarget) -> Iterator[Problem]:
     at = setup.location(target.at)
-    is_ros = any("rclcpp" in _text_of(package, path) for path in target.sources[:_MAX_FILES])
+    is_ros = any("rclcpp" in _read_text(package, path) for path in target.sources[:_MAX_FILES])
     message = f"no install() names the target {target.name!r}, so "
     if target.kind == "executable" and is_ros:
         yield Problem(kinds.NOT_INSTALLED, f"{message}ros2 run does not find it", at)
@@ -90,7 +90,7 @@ def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> I
         return
     included: dict[str, str] = {}
     for path in target.sources[:_MAX_FILES]:
-        for name in _INCLUDE.findall(_text_of(package, path)):
+        for name in _INCLUDE.findall(_read_text(package, path)):
             included.setdefault(name, path)
     others: set[str] = set()
     if {*target.packages} <= exports.keys():
@@ -133,7 +133,7 @@ def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:
     others = [path for path in paths if path not in compiled and not path.startswith(unread)]
     others = [path for path in others if not _is_named(path, commented)]
     for path in others[:_MAX_FILES]:
-        text = _text_of(package, path)
+        text = _read_text(package, path)
         if "rclcpp" in text and _PROGRAM.search(text) and not _OF_TESTS.search(path):
             message = f"no target of CMakeLists.txt compiles {path}"
             yield Problem(kinds.NOT_COMPILED, message, setup.location(setup.targets[-1].at))
@@ -144,7 +144,7 @@ def _is_named(path: str, text: str) -> bool:
     return re.search(rf"\b{re.escape(posixpath.basename(path))}\b", text) is not None
 
 
-def _text_of(package: Package, path: str) -> str:
+def _read_text(package: Package, path: str) -> str:
     """Return the text of a file without comments; empty for one that is not read."""
     data = package.tree.read(path, _MAX_BYTES)
     if data is None or not package.budget.take_of_whole(len(data) // 16):

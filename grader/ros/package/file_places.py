@@ -124,7 +124,7 @@ def find_places(
 
     Raises MissingElement for one that a build does not install.
     """
-    places = [_place_of(package, file, built=built) for file in launch.named(*purposes)]
+    places = [_find_place(package, file, built=built) for file in launch.named(*purposes)]
     present = {
         posixpath.basename(path) for other in package.packages.values() for path in other.tree.files
     }
@@ -161,7 +161,7 @@ def _missing_file(package: Package, place: FilePlace) -> MissingElement:
     return MissingElement(kind, name, message=place.text, location=place.file.location, cause=cause)
 
 
-def _place_of(package: Package, file: "NamedFile", *, built: bool) -> FilePlace:
+def _find_place(package: Package, file: "NamedFile", *, built: bool) -> FilePlace:
     """Return whether a launch file finds a file that it names."""
     if file.path is None or file.reason:
         state: Literal["wrong", "unknown"] = "wrong" if file.is_certain else "unknown"

@@ -308,7 +308,7 @@ def _paths_of_reference(reference: str, package: Package, robots: Sequence[Robot
     owner = package
     if owner_name not in package.names:
         owner = package.find(owner_name) or package
-    source = owner.source_of(reference)
+    source = owner.find_source(reference)
     if source:
         return {owner.path(source)}
     # Where the build is not understood, the name of the file has to do.

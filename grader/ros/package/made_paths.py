@@ -49,7 +49,7 @@ def made_paths(source: Source) -> Iterator[MadePath]:
     else:
         made = set(_made_in(_SUBSTITUTION.sub(UNKNOWN, source.text)))
     for path in sorted(made):
-        end = _end_of(path)
+        end = _read_end(path)
         if UNKNOWN in end:
             yield MadePath(tuple(end.split(UNKNOWN)))
 
@@ -62,7 +62,7 @@ def _made_in(text: str) -> Iterator[str]:
             yield before.rpartition(":")[2] + unknown + after
 
 
-def _end_of(path: str) -> str:
+def _read_end(path: str) -> str:
     """Return the last part of a path, with its folder where the part says little."""
     folder, name = posixpath.split(_QUOTE.sub("", path).strip())
     folder = posixpath.basename(folder)

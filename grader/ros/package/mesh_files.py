@@ -163,7 +163,7 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
     of home folders.
     """
     robot = urdf.loaded.robot
-    meshes = meshes_of(robot) if robot is not None else {}
+    meshes = list_meshes(robot) if robot is not None else {}
     for name, (link, mesh) in islice(meshes.items(), _MAX_WARNED):
         file = mesh_file(name, is_expanded=urdf.is_expanded)
         fault = _sure_fault(file, packages, tree)
@@ -172,7 +172,7 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
             yield Problem(MESH_PATH, file.problem_text(link, fault), at.resolve())
 
 
-def meshes_of(robot: Robot) -> dict[str, tuple[str, Mesh]]:
+def list_meshes(robot: Robot) -> dict[str, tuple[str, Mesh]]:
     """Return the meshes of a robot by the names of their files, each with a link that has it."""
     shapes = [(link.name, visual.geometry) for link in robot.links for visual in link.visuals]
     shapes += [

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from grader.base.errors import InputError, NotDecided
 from grader.base.text import quoted, size_text
-from grader.files.reading import sha256_of
+from grader.files.reading import hash_bytes
 from grader.files.tree import File, Tree
 from grader.ros.package.installed_files import look_up
 from grader.ros.package.mesh_content import LFS_POINTER
-from grader.ros.package.mesh_files import RELATIVE, MeshFile, mesh_file, meshes_of
+from grader.ros.package.mesh_files import RELATIVE, MeshFile, list_meshes, mesh_file
 from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.model import Mesh
@@ -86,7 +86,7 @@ class MeshLoader:
     def _name_packages(self) -> set[str]:
         """Return the names of the packages that the robot's meshes are in."""
         robot = self._robot.loaded.robot
-        meshes = meshes_of(robot) if robot is not None else {}
+        meshes = list_meshes(robot) if robot is not None else {}
         files = [mesh_file(filename, is_expanded=self._robot.is_expanded) for filename in meshes]
         return {file.package for file in files if file.package}
 
@@ -103,7 +103,7 @@ class MeshLoader:
             return f"cannot be read: {error}"
         if data.startswith(LFS_POINTER):
             return "is not here: this download holds only the pointer of Git LFS"
-        content = (sha256_of(data), posixpath.splitext(path)[1])
+        content = (hash_bytes(data), posixpath.splitext(path)[1])
         if content not in self.kept:
             self.kept[content] = read_triangles(data, path)
         triangles = self.kept[content]

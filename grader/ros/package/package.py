@@ -491,7 +491,7 @@ class Package:
         """
         paths = [reference.path for reference in launch.named("rviz") if reference.path is not None]
         for path in paths:
-            source = self.source_of(path)
+            source = self.find_source(path)
             if source in self.rviz_files:
                 return source
         names = {path.rpartition("/")[2] for path in paths}
@@ -500,7 +500,7 @@ class Package:
                 return path
         return None
 
-    def source_of(self, path: str) -> str | None:
+    def find_source(self, path: str) -> str | None:
         """Return the file of the package that a build installs at a path.
 
         The path begins with the prefix's stand-in.

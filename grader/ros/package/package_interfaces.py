@@ -63,7 +63,7 @@ def _name_others(
     known = set(listed)
     others = {}
     for path in files:
-        name = _name_of(path)
+        name = _read_name(path)
         if path not in known and name not in types:
             others[name] = package.path(path)
     return others
@@ -90,7 +90,7 @@ def _read_types(package: Package, paths: Iterable[str]) -> tuple[dict[str, _OwnI
             is_complete = False
             continue
         interface = read_interface(data, package.path(path), package.name)
-        types[_name_of(path)] = _OwnInterface(interface, package.path(path))
+        types[_read_name(path)] = _OwnInterface(interface, package.path(path))
     return types, is_complete
 
 
@@ -103,7 +103,7 @@ def _interface_files(package: Package) -> Sequence[str]:
     ]
 
 
-def _name_of(path: str) -> str:
+def _read_name(path: str) -> str:
     """Return the name of the type that a file defines: its folder, as rosidl does, and its name."""
     folder, name = posixpath.split(posixpath.splitext(path)[0])
     return f"{posixpath.basename(folder)}.{name}"

@@ -26,7 +26,7 @@ class RobotState(NamedTuple):
         return self.refusals, self.dropped
 
 
-def state_of(reading: "Reading") -> RobotState:
+def make_state(reading: "Reading") -> RobotState:
     """Return what a reading is compared by."""
     kinds = [problem.kind for problem in reading.problems]
     rejecting = [kind for kind in kinds if kind.effect == "rejects"]

@@ -112,9 +112,9 @@ class Read(NamedTuple):
     @property
     def state(self) -> "RobotState":
         """What this is compared by with another reading of the file."""
-        from grader.ros.package.robot_comparison import state_of  # late: most files have no slips
+        from grader.ros.package.robot_comparison import make_state  # late: most files have no slips
 
-        return state_of(self.reading)
+        return make_state(self.reading)
 
     @property
     def slip_choices(self) -> "Iterator[Choice]":
@@ -256,7 +256,7 @@ class Surroundings(NamedTuple):
         for package in self.packages:
             if package is owner or package.name != owner.name:
                 references = package.robot_references(name)
-                if any(owner.source_of(reference.path or "") for reference in references):
+                if any(owner.find_source(reference.path or "") for reference in references):
                     launched.append(package)
         return launched
 

@@ -155,7 +155,7 @@ def is_robot(read: Callable[[int], bytes]) -> bool:
     return _ROBOT.match(data, _end_of_prolog(data)) is not None
 
 
-def parts_of(robots: Sequence[RobotFile]) -> frozenset[str]:
+def list_parts(robots: Sequence[RobotFile]) -> frozenset[str]:
     """Return the paths of those files that another one includes."""
     includers: dict[str, set[str]] = {}
     for robot in robots:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from grader.base.source import Location, Source
 from grader.ros.python.constants import last_name
-from grader.ros.python.parse import Code, every_node, location_in, parse, position_of
+from grader.ros.python.parse import Code, every_node, location_in, make_position, parse
 
 
 class _SetupVersion(NamedTuple):
@@ -26,7 +26,7 @@ def versions_in(setup: Source) -> Iterator[_SetupVersion]:
             values = _assigned_to(value.id, nodes)
         match values:
             case [ast.Constant(value=str(version)) as text]:
-                yield _SetupVersion(version, location_in(setup, position_of(text)))
+                yield _SetupVersion(version, location_in(setup, make_position(text)))
 
 
 def _given_versions(nodes: Sequence[ast.AST]) -> list[ast.expr]:

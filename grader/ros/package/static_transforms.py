@@ -67,7 +67,7 @@ def with_transforms(
         name = package.launch_file(path)
         if name is not None:
             robot = _with_frames(robot, package.launch(name), name, roots, source_of)
-    if any(started.frames_of("") != ("",) for started in package.launches):
+    if any(started.list_frames("") != ("",) for started in package.launches):
         robot = replace(
             robot,
             incomplete=robot.incomplete or "robot_state_publisher gives the frames other names",

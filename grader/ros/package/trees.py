@@ -21,7 +21,7 @@ from grader.ros.known.gazebo_rows import gazebo
 from grader.ros.known.releases import Release
 from grader.ros.package.package import Package
 from grader.ros.python.budget import Budget, OutOfBudget
-from grader.ros.xml.elements import attributes_of, matches_value, name_of, readable, text_in
+from grader.ros.xml.elements import list_attributes, matches_value, read_name, readable, text_in
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def is_path(text: str) -> bool:
     return all(_STEP.fullmatch(part) for part in re.split(r"[./](?![^\[]*\])", text))
 
 
-def steps_of(path: str, *, is_xml: bool) -> list[PathStep]:
+def split_path(path: str, *, is_xml: bool) -> list[PathStep]:
     """Return the steps of a path; an empty path, or a dot, is the entry itself."""
     parts = re.split(r"/(?![^\[]*\])" if is_xml else r"\.(?![^\[]*\])", path)
     steps = []
@@ -127,7 +127,7 @@ class Search:
     def fits(self, entry: TreeEntry, step: PathStep) -> bool:
         """Return whether an entry contains the values of a step."""
         for key, value in step.conditions:
-            inner = self.find(entry, steps_of(key, is_xml=entry.is_xml))
+            inner = self.find(entry, split_path(key, is_xml=entry.is_xml))
             texts = [text for row in inner for text in row.texts]
             if not any(matches_value(text, value, _EXACT) for text in texts):
                 return False
@@ -170,7 +170,7 @@ def xml_entry(
     In a sensor of Gazebo, a word stands for another one that the Gazebo of these releases reads as
     the same, and a topic for itself with and without a slash, since there are no namespaces.
     """
-    name, text = name_of(element), text_in(element)
+    name, text = read_name(element), text_in(element)
     is_topic = name == "topic" and _is_sensor(element.getparent())
     return TreeEntry(
         name,
@@ -197,13 +197,13 @@ def _list_xml_children(
 ) -> list[TreeEntry]:
     attributes = [
         TreeEntry(f"@{name}", value, list, partial(locate, element, name), is_xml=True)
-        for name, value in attributes_of(element)
+        for name, value in list_attributes(element)
     ]
     children = [*element.iterchildren("*")]
     names: Mapping[str, str] = {}
     if _is_sensor(element):
         kind = next((entry.text or "" for entry in attributes if entry.name == "@type"), "")
-        names = _meant_elements(kind, {name_of(child) for child in children}, releases)
+        names = _meant_elements(kind, {read_name(child) for child in children}, releases)
         meant = gazebo().sensor_types.get(kind)
         attributes = [
             replace(entry, meant_text=meant) if entry.name == "@type" else entry
@@ -211,15 +211,18 @@ def _list_xml_children(
         ]
     return [
         *attributes,
-        *(xml_entry(child, locate, releases, names.get(name_of(child), "")) for child in children),
+        *(
+            xml_entry(child, locate, releases, names.get(read_name(child), ""))
+            for child in children
+        ),
     ]
 
 
 def _is_sensor(element: Element | None) -> bool:
     """Return whether an element is a sensor of Gazebo: in a <gazebo> of URDF, or in SDF."""
-    if element is None or name_of(element) != "sensor":
+    if element is None or read_name(element) != "sensor":
         return False
-    return any(name_of(outer) in ("gazebo", "sdf") for outer in element.iterancestors())
+    return any(read_name(outer) in ("gazebo", "sdf") for outer in element.iterancestors())
 
 
 def _meant_elements(

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Iterator
 from pathlib import PurePosixPath
 
 from grader.ros.python import values as py
-from grader.ros.python.values import parts_of, refuse, too_large
+from grader.ros.python.values import list_parts, refuse, too_large
 
 READING = 500_000  # parts that reading one workspace may produce or look at: some 0.5 s
 # Parts that reading all files of a workspace and comparing their names may take, besides one for
@@ -132,7 +132,7 @@ class Budget:
         while pending:
             part = pending.pop()
             size += 1 + self._size_alone(part, kind)
-            inside = parts_of(part)
+            inside = list_parts(part)
             if size + len(pending) + len(inside) > py.MAX_PARTS:
                 too_large("value")
             self.charge(len(inside))

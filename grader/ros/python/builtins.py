@@ -10,12 +10,12 @@ from grader.ros.python import values as py
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import (
     call_plain,
+    charge_str,
     checked_key,
-    items_of,
+    explain_unknown,
     iterate,
     known,
-    reason_of,
-    str_of,
+    list_items,
     too_large,
 )
 
@@ -115,7 +115,7 @@ def make_dict(*args: py.Value, **kwargs: py.Value) -> py.Value:
 
 
 def _sum(values: py.Value, start: py.Value = 0) -> py.Value:
-    items = items_of(values)
+    items = list_items(values)
     if any(isinstance(item, list | tuple) for item in (start, *items)):
         _refuse("the sum of lists")
     total, lost = sum((), start), 0.0
@@ -173,7 +173,7 @@ def truth(value: py.Value) -> bool:
     """Return whether a value counts as true. Raises Undetermined."""
     if py.is_object(value):
         return True
-    if isinstance(value, py.OPAQUE) and reason_of(value):
+    if isinstance(value, py.OPAQUE) and explain_unknown(value):
         known(value)
     return bool(call_plain(bool, value))
 
@@ -184,7 +184,7 @@ def _taking_known_items(function: Callable[..., py.Value]) -> Callable[..., py.V
     def of_known(*args: py.Value, **named: py.Value) -> py.Value:
         if "key" in named:
             _refuse("a key of sorted, min or max")
-        items = items_of(args[0]) if len(args) == 1 else list(args)
+        items = list_items(args[0]) if len(args) == 1 else list(args)
         known([*items, *named.values()])
         return function(*([items] if len(args) == 1 else items), **named)
 
@@ -240,7 +240,7 @@ BUILTINS: Mapping[str, py.PlainFunction] = {
         for kind, table in (("plain", _FUNCTIONS), ("holds", _HOLDING), ("applies", _APPLYING))
         for name, function in table.items()
     },
-    "str": py.PlainFunction("str", lambda *args: str_of(*args) if args else "", "text"),
+    "str": py.PlainFunction("str", lambda *args: charge_str(*args) if args else "", "text"),
 }
 
 

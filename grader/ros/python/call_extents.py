@@ -4,7 +4,7 @@ import ast
 from collections.abc import Mapping
 
 from grader.base.source import Source
-from grader.ros.python.parse import Code, Position, location_in, parse, position_of
+from grader.ros.python.parse import Code, Position, location_in, make_position, parse
 from grader.ros.python.walking import walk
 
 
@@ -18,7 +18,7 @@ def ends_of_calls(source: Source) -> Mapping[tuple[int, int], int]:
     ends: dict[tuple[int, int], int] = {}
     for node in walk(code.tree) if isinstance(code, Code) else ():
         if isinstance(node, ast.Call):
-            place = location_in(source, position_of(node))
+            place = location_in(source, make_position(node))
             last = Position(node.end_lineno or 0, (node.end_col_offset or 0) + 1)
             end = location_in(source, last)
             key, offset = (place.line, place.column), source.start_offset(end)

@@ -14,7 +14,7 @@ from grader.ros.python.bindings import bound_names
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.interpreter import Interpreter
 from grader.ros.python.library import imported_names
-from grader.ros.python.parse import START, position_of
+from grader.ros.python.parse import START, make_position
 from grader.ros.python.values import (
     EvaluationFails,
     FunctionTable,
@@ -79,7 +79,7 @@ class Constants(Interpreter):
             if isinstance(node, ast.Global | ast.Nonlocal):
                 self._shared.update(node.names)
 
-    def value_of(self, node: ast.expr | None, scope: Scope) -> Value:
+    def evaluate_node(self, node: ast.expr | None, scope: Scope) -> Value:
         """Return the value of an expression; None for none."""
         if node is None:
             return None
@@ -96,11 +96,11 @@ class Constants(Interpreter):
         try:
             return self.value(node, scope)
         except (Undetermined, EvaluationFails) as error:
-            return Unknown(str(error), position_of(node))
+            return Unknown(str(error), make_position(node))
 
     def bound(self, nodes: Sequence[ast.AST], scope: Scope) -> Scope:
         """Return a scope with the names that statements bind: constants, and what is not known."""
-        nodes = sorted(nodes, key=offset_of)
+        nodes = sorted(nodes, key=make_order)
         counts, values = _bindings(nodes)
         unknown = Unknown("it is not bound once", START)
         names = [name for name in counts if name.partition(".")[0] not in self._shared]
@@ -110,7 +110,7 @@ class Constants(Interpreter):
             return scope
         for name, expression in values.items():
             if name in names and counts[name] == 1 and expression.lineno > last_star:
-                value = self.value_of(expression, scope)
+                value = self.evaluate_node(expression, scope)
                 # A list or a dictionary may be changed.
                 scope.names[name] = unknown if isinstance(value, list | dict) else value
         return scope
@@ -152,7 +152,7 @@ class Constants(Interpreter):
         return names
 
     def _constant_name(self, node: ast.Name, scope: Scope) -> Value:
-        value: Value = Unknown("it is not a constant", position_of(node))
+        value: Value = Unknown("it is not a constant", make_position(node))
         if node.id in python_names("builtins"):
             value = self._builtin(node.id)
         return constant_in(scope, node.id, value)
@@ -200,7 +200,7 @@ def last_name(node: ast.AST) -> str:
     return ""
 
 
-def offset_of(node: ast.AST) -> tuple[int, int]:
+def make_order(node: ast.AST) -> tuple[int, int]:
     """Return line and column of a node, by which nodes are in the order of the file."""
     return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)
 

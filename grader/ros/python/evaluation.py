@@ -18,8 +18,8 @@ from grader.ros.python.builtins import BUILTINS, call, truth
 from grader.ros.python.expressions import Expressions
 from grader.ros.python.library import USUAL_NAMES, usual_meaning
 from grader.ros.python.operators import method, operate
-from grader.ros.python.parse import START, Position, position_of
-from grader.ros.python.values import call_plain, known, reason_of
+from grader.ros.python.parse import START, Position, make_position
+from grader.ros.python.values import call_plain, explain_unknown, known
 from grader.ros.python.walking import walk
 
 
@@ -126,7 +126,7 @@ class Evaluation(Expressions):
         try:
             return self.value(node, scope)
         except py.Undetermined as error:
-            unknown = error.as_unknown(position_of(node))
+            unknown = error.as_unknown(make_position(node))
             if error.follows_error:
                 return unknown
             may_change = not isinstance(node, _WHOLE) and any(
@@ -136,9 +136,9 @@ class Evaluation(Expressions):
                 raise py.Undetermined(unknown.reason, unknown.at, is_final=True) from None
             return self.doubted(unknown)
         except py.EvaluationFails as error:
-            at = error.at or position_of(node)
+            at = error.at or make_position(node)
             self.error(str(error), at, error.kind, argument=error.argument, lacks=error.lacks)
-            return py.unknown_after_error(position_of(node))
+            return py.unknown_after_error(make_position(node))
 
     def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:
         """Return the value of a name.
@@ -154,7 +154,7 @@ class Evaluation(Expressions):
         if node.id.startswith("__"):
             raise py.Undetermined(f"the name {node.id!r} {NOT_EVALUATED}")
         message = f"the name {node.id!r} is not defined or imported"
-        self.error(message, position_of(node), NameError, name=node.id)
+        self.error(message, make_position(node), NameError, name=node.id)
         texts = (name for name, value in self.module.names.items() if isinstance(value, str))
         meant = closest(node.id, texts) if node.id not in USUAL_NAMES else None
         if meant is not None:
@@ -177,7 +177,7 @@ class Evaluation(Expressions):
         ) and not py.is_object(value):
             nodes = (node for branch in branches for node in walk(branch))
             if any(isinstance(node, _CHANGING) for node in nodes):
-                reason = f"a condition {NOT_EVALUATED}: {reason_of(value)}"
+                reason = f"a condition {NOT_EVALUATED}: {explain_unknown(value)}"
                 raise py.Undetermined(reason, getattr(value, "at", self.at), is_final=True)
         return truth(value)
 
@@ -200,8 +200,8 @@ class Evaluation(Expressions):
     def unpack(self, kwargs: dict[str, py.Value], value: py.Value, node: ast.expr) -> None:
         """Add the arguments that ** unpacks."""
         if not isinstance(value, dict):
-            reason = reason_of(value) or f"this use of ** {NOT_EVALUATED}"
-            raise py.Undetermined(reason, position_of(node), is_final=True)
+            reason = explain_unknown(value) or f"this use of ** {NOT_EVALUATED}"
+            raise py.Undetermined(reason, make_position(node), is_final=True)
         for key, item in value.items():
             if not isinstance(key, str) or key in kwargs:
                 raise py.EvaluationFails(
@@ -213,9 +213,9 @@ class Evaluation(Expressions):
         self, function: py.Value, args: list[py.Value], kwargs: dict[str, py.Value], node: ast.expr
     ) -> py.Value:
         """Return the value of a call of any value."""
-        made = py.Call("", args, kwargs, position_of(node))
+        made = py.Call("", args, kwargs, make_position(node))
         for keyword in node.keywords if isinstance(node, ast.Call) else ():
-            made.places[keyword.arg or ""] = position_of(keyword.value)
+            made.places[keyword.arg or ""] = make_position(keyword.value)
         return self.call_value(function, made)
 
     def call_value(self, function: py.Value, made: py.Call) -> py.Value:
@@ -247,7 +247,7 @@ class Evaluation(Expressions):
                 kind = type(function).__name__
                 raise py.EvaluationFails(MISSING_COMMA.format(kind))
             case _:
-                reason = f"this call {NOT_EVALUATED}: {reason_of(function)}".rstrip(": ")
+                reason = f"this call {NOT_EVALUATED}: {explain_unknown(function)}".rstrip(": ")
                 raise py.Undetermined(reason, made.at, is_final=True)
         return result
 
@@ -384,7 +384,7 @@ class Evaluation(Expressions):
             and isinstance(left, py.Call)
             and f"{left.name}.__truediv__" in self.functions
         ):
-            made = py.Call("", [right], {}, position_of(node))
+            made = py.Call("", [right], {}, make_position(node))
             return self.call_value(py.BoundMethod(left, "__truediv__"), made)
         return operate(node.op, left, right, self.budget)
 

@@ -33,8 +33,8 @@ from grader.ros.python.library import (
     usual_meaning,
 )
 from grader.ros.python.operators import has_attribute, operate
-from grader.ros.python.parse import Code, Position, bound_in, own_nodes, position_of
-from grader.ros.python.values import call_plain, known, refuse, str_of
+from grader.ros.python.parse import Code, Position, bound_in, make_position, own_nodes
+from grader.ros.python.values import call_plain, charge_str, known, refuse
 from grader.ros.python.walking import walk
 
 _PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
@@ -80,7 +80,9 @@ class _ClassScope(py.Scope):
 def _stop_at(node: ast.FunctionDef) -> Iterator[py.Value]:
     """Raise Undetermined where the first item of a generator function is needed."""
     yield from ()
-    raise py.Undetermined("a generator function is not evaluated", position_of(node), is_final=True)
+    raise py.Undetermined(
+        "a generator function is not evaluated", make_position(node), is_final=True
+    )
 
 
 def _catches(kind: ast.expr | None, raised: py.EvaluationFails, at: Position) -> bool:
@@ -205,7 +207,7 @@ class Interpreter(Evaluation):
     def _block(self, body: list[ast.stmt], scope: py.Scope) -> None:
         for node in body:
             self.budget.charge(1)
-            self.at = position_of(node)
+            self.at = make_position(node)
             kind = self._STATEMENTS.get(type(node))
             if kind is None:
                 raise py.Undetermined(
@@ -216,18 +218,18 @@ class Interpreter(Evaluation):
             try:
                 kind(self, node, scope)
             except py.EvaluationFails as error:  # of the statement itself, such as an assignment
-                at = error.at or position_of(node)
+                at = error.at or make_position(node)
                 self.error(str(error), at, error.kind, argument=error.argument, lacks=error.lacks)
             except py.Undetermined as error:
                 if error.is_final:
                     raise
                 reason = f"this statement is not evaluated: {error}"
                 raise py.Undetermined(
-                    reason, error.at or position_of(node), is_final=True
+                    reason, error.at or make_position(node), is_final=True
                 ) from None
 
     def _functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
-        at = position_of(node)
+        at = make_position(node)
         if getattr(node, "type_params", []):
             raise py.Undetermined(
                 "a function with type parameters is not evaluated", at, is_final=True
@@ -435,7 +437,7 @@ class Interpreter(Evaluation):
             if any(_catches(kind, raised, self.at) for kind in kinds):
                 if handler.name:
                     scope.names[handler.name] = py.Unknown(
-                        "an error is not evaluated", position_of(handler)
+                        "an error is not evaluated", make_position(handler)
                     )
                 self._block(handler.body, scope)
                 return
@@ -462,7 +464,7 @@ class Interpreter(Evaluation):
             case py.Namespace():
                 return owner.find(name)
             case py.Unknown(is_text=False):
-                return owner.attribute(name, position_of(node))
+                return owner.attribute(name, make_position(node))
         if isinstance(owner, py.PLAIN) and not has_attribute(owner, name, self.releases):
             raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
         return py.BoundMethod(owner, name, node)
@@ -488,7 +490,7 @@ class Interpreter(Evaluation):
             message = (
                 f"glob is a function here, so glob.{node.attr} is not defined: write glob(...)"
             )
-            self.error(message, position_of(node))
+            self.error(message, make_position(node))
             return owner
         module, full = owner.name, f"{owner.name}.{node.attr}"
         is_evaluated = full in self.functions
@@ -500,7 +502,7 @@ class Interpreter(Evaluation):
             meant = closest(full, known)
             if meant is None:
                 raise py.EvaluationFails(error)
-            self.error(error, position_of(node))
+            self.error(error, make_position(node))
             full = meant
         return CONSTANTS.get(full, py.QualifiedName(full, is_defined=owner.is_defined))
 
@@ -508,7 +510,7 @@ class Interpreter(Evaluation):
         """Return the value of owner[key]; of something outside of the file, by the table."""
         if not isinstance(owner, py.QualifiedName | py.Call):
             return super().item(owner, key, node)
-        made = py.Call(f"{owner.name}.__getitem__", [key], {}, position_of(node))
+        made = py.Call(f"{owner.name}.__getitem__", [key], {}, make_position(node))
         function = self.functions.get(made.name)
         if (
             function is None
@@ -517,9 +519,9 @@ class Interpreter(Evaluation):
         ):
             self.error(
                 f"{owner.name} is a function: write ( ) around its arguments, not [ ]",
-                position_of(node),
+                make_position(node),
             )
-            return self.call_value(owner, py.Call("", [key], {}, position_of(node)))
+            return self.call_value(owner, py.Call("", [key], {}, make_position(node)))
         if function is None or isinstance(function, py.PlainFunction):
             raise py.Undetermined(f"{owner.name}[...] {NOT_EVALUATED}")
         return function(self, made)
@@ -535,7 +537,7 @@ class Interpreter(Evaluation):
                 values += self.budget.items(self.evaluate(node.value, scope))
             except py.Undetermined as error:
                 raise py.Undetermined(
-                    str(error), error.at or position_of(node), is_final=True
+                    str(error), error.at or make_position(node), is_final=True
                 ) from None
         return values
 
@@ -553,7 +555,7 @@ class Interpreter(Evaluation):
                 before = self._separated(first)
                 if isinstance(before[-1], ast.Tuple | ast.List):
                     kind = type(before[-1]).__name__.lower()
-                    self.error(MISSING_COMMA.format(kind), position_of(node))
+                    self.error(MISSING_COMMA.format(kind), make_position(node))
                     return [*before, ast.copy_location(ast.Tuple(elts=args, ctx=ast.Load()), start)]
         return [node]
 
@@ -586,7 +588,7 @@ class Interpreter(Evaluation):
             self.budget.measure(value, "text")
         if node.format_spec is not None or node.conversion not in (-1, ord("s")):
             raise py.Undetermined("a format of this kind is not supported")
-        return value if is_text else str_of(value)
+        return value if is_text else charge_str(value)
 
     def _dictcomp(self, node: ast.DictComp, scope: py.Scope) -> py.Value:
         return {
@@ -596,7 +598,7 @@ class Interpreter(Evaluation):
 
     def _lambda(self, node: ast.Lambda, scope: py.Scope) -> py.Value:
         return self.function(
-            node.args, scope, position_of(node), lambda inner: self.evaluate(node.body, inner)
+            node.args, scope, make_position(node), lambda inner: self.evaluate(node.body, inner)
         )
 
     def bind(self, target: ast.expr, value: py.Value, scope: py.Scope) -> None:
@@ -607,7 +609,7 @@ class Interpreter(Evaluation):
                     self.evaluate(owner, scope),
                     known(self.key(key, scope)),
                     value,
-                    position_of(target),
+                    make_position(target),
                 )
             case ast.Attribute(value=owner, attr=name):
                 changed = self.evaluate(owner, scope)
@@ -616,7 +618,7 @@ class Interpreter(Evaluation):
                         f"{type(changed).__name__!r} has no attribute {name!r}"
                     )
                 reason = f"a change of the attribute {name} is not evaluated"
-                raise py.Undetermined(reason, position_of(target), is_final=True)
+                raise py.Undetermined(reason, make_position(target), is_final=True)
             case _:
                 super().bind(target, value, scope)
 

@@ -14,7 +14,7 @@ from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import Release
 from grader.ros.python import values as py
 from grader.ros.python.budget import CHARACTERS, Budget
-from grader.ros.python.values import call_plain, items_of, known, refuse, str_of, too_large
+from grader.ros.python.values import call_plain, charge_str, known, list_items, refuse, too_large
 
 _WIDE = re.compile(r"\*|\d{3}")
 _FIELD = re.compile(r"\{(?:\w*)\}")
@@ -89,7 +89,7 @@ def _percent_format(template: str, value: py.Value) -> str:
     """Return template % value."""
     if _WIDE.search(template):
         raise py.Undetermined("this format is not supported")
-    str_of(value)
+    charge_str(value)
     return str(template % value)
 
 
@@ -97,7 +97,7 @@ def _format(text: str, *args: py.Value, **kwargs: py.Value) -> str:
     """Return text.format(...), for fields that are names or numbers."""
     if re.search(r"[{}]", _FIELD.sub("", text)):
         raise py.Undetermined("a format of this kind is not supported")
-    size = sum(len(str_of(value)) for value in (*args, *kwargs.values()))
+    size = sum(len(charge_str(value)) for value in (*args, *kwargs.values()))
     if len(text) + size * text.count("{") > py.MAX_TEXT:
         too_large("text")
     return text.format(*args, **kwargs)
@@ -110,7 +110,7 @@ def _replace(text: str, old: str, new: str, *count: int) -> str:
 
 
 def _join(separator: str, items: py.Value) -> str:
-    parts = items_of(items)
+    parts = list_items(items)
     if sum(len(part) + len(separator) for part in parts if isinstance(part, str)) > py.MAX_TEXT:
         too_large("text")
     return separator.join(parts)

@@ -58,7 +58,7 @@ AnyFunction = ast.FunctionDef | ast.AsyncFunctionDef
 _Placed = ast.expr | ast.stmt | ast.excepthandler | ast.alias | ast.keyword
 
 
-def position_of(node: _Placed) -> Position:
+def make_position(node: _Placed) -> Position:
     """Return the position of a node."""
     return Position(node.lineno, node.col_offset + 1)
 
@@ -76,7 +76,7 @@ class Code(NamedTuple):
 
     def at(self, node: _Placed) -> Location:
         """Return the location of a node."""
-        return location_in(self.source, position_of(node))
+        return location_in(self.source, make_position(node))
 
 
 @lru_cache(maxsize=4)  # the readers of a module follow each other

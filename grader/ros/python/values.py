@@ -2,8 +2,8 @@
 
 They are Python's own, and stand-ins for functions, iterators and what is not evaluated.
 
-What is not known raises Undetermined where it is needed: `known`, `iterate` and `str_of` are the
-ways to a value.
+What is not known raises Undetermined where it is needed: `known`, `iterate` and `charge_str` are
+the ways to a value.
 """
 
 import ast
@@ -335,7 +335,7 @@ class DottedDict(dict[Value, Value]):
 OPAQUE = (Unknown, QualifiedName, BoundMethod, Call, Function, PlainFunction, Namespace, Items)
 
 
-def parts_of(part: Value) -> Collection[Value]:
+def list_parts(part: Value) -> Collection[Value]:
     """Return what a value contains."""
     if isinstance(part, dict):
         return [*part.keys(), *part.values()]
@@ -381,7 +381,7 @@ def refuse(value: Value, message: str) -> NoReturn:
     """Raise Undetermined for a value that is not known, or not supported."""
     if isinstance(value, Unknown):
         raise value.as_signal(value.at)
-    raise Undetermined(reason_of(value) or message, getattr(value, "at", None))
+    raise Undetermined(explain_unknown(value) or message, getattr(value, "at", None))
 
 
 def unknown_after_error(at: "Position") -> Unknown:
@@ -389,7 +389,7 @@ def unknown_after_error(at: "Position") -> Unknown:
     return Unknown("Python raises an error before", at, follows_error=True)
 
 
-def items_of(value: Value) -> list[Value]:
+def list_items(value: Value) -> list[Value]:
     """Return what a loop over a value yields, all of it known. Raises Undetermined."""
     items = list(iterate(value))
     if isinstance(value, Items):
@@ -406,7 +406,7 @@ def known(value: Value) -> Value:
     return value
 
 
-def reason_of(value: Value) -> str:
+def explain_unknown(value: Value) -> str:
     """Return why a value is not known; nothing for a plain one."""
     match value:
         case Unknown(reason=reason):
@@ -445,7 +445,7 @@ def checked_key(key: Value) -> Value:
     return key
 
 
-def str_of(value: Value) -> str:
+def charge_str(value: Value) -> str:
     """Return str() of a value that is charged.
 
     Raises Undetermined where it differs between runs, such as an address.

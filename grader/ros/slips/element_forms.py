@@ -15,7 +15,7 @@ from grader.base.markup import WORD_OF_VALUE
 from grader.base.slips import Slip, make_slip
 from grader.base.source import Edits, Source
 from grader.base.text import cut, quoted
-from grader.ros.slips.nodes import place_of
+from grader.ros.slips.nodes import find_place
 from grader.ros.xacro.xacro_nodes import XacroNode
 from grader.ros.xml.broken_tags import read_attributes
 from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN, PARTS, REQUIRED, TAGS
@@ -55,12 +55,12 @@ def element_slips(root: XacroNode) -> Iterator[Slip]:
         node, around = waiting.pop()
         parent = around[-1].tag if around else ""
         if node.tag not in _OF_ROBOT or around[1:]:
-            yield from _slips_of(node, around, parent)
+            yield from _find_slips(node, around, parent)
         if node.tag not in _OF_OTHERS:
             waiting += [(child, (*around, node)) for child in reversed(node.elements)]
 
 
-def _slips_of(node: XacroNode, around: tuple[XacroNode, ...], parent: str) -> Iterator[Slip]:
+def _find_slips(node: XacroNode, around: tuple[XacroNode, ...], parent: str) -> Iterator[Slip]:
     if node.tag in TAGS:
         yield from _with_attributes_inside(node)
     if node.tag == "origin" and {*node.attributes} == {"xyz"}:
@@ -91,14 +91,14 @@ def _with_attributes_inside(node: XacroNode) -> Iterator[Slip]:
         values, removed = _values_of_children(node, absent)
     if not values:
         return
-    source, start = place_of(node)
+    source, start = find_place(node)
     shown = quoted(cut(" ".join(values.values()), _MAX_SHOWN))
     if text or len(removed) == len(node.elements):
         edits = _as_empty_element(source, start, node, values)
     else:
         end = markup.name_end(source.text, start)
         head = source.edit(start, end, source.text[start:end] + attributes_text(values))
-        edits = (head, *(without_element(*place_of(child)) for child in removed))
+        edits = (head, *(without_element(*find_place(child)) for child in removed))
     names = " and ".join(values)
     reaction = f"ROS 2 reads no {names} of <{node.tag}> from what is inside of it"
     assumption = f"{shown} in <{node.tag}> is read as {attributes_text(values).strip()}"
@@ -138,7 +138,7 @@ def _values_of_text(tag: str, text: str, absent: list[str]) -> Mapping[str, str]
 def _attributes_beside(parent: XacroNode) -> Iterator[Slip]:
     """Yield the elements that are attributes of one beside them: <rpy> beside <origin>."""
     for node in parent.elements:
-        name, value = node.tag, _value_of(node)
+        name, value = node.tag, _read_value(node)
         if name in TAGS or name not in PARTS or not _fits(name, value):
             continue
         owners = [
@@ -149,8 +149,8 @@ def _attributes_beside(parent: XacroNode) -> Iterator[Slip]:
         if len(owners) != 1:
             continue
         given = " ".join(WORD_OF_VALUE.findall(value))
-        head = with_attribute(*place_of(owners[0]), name, given)
-        edits = (head, without_element(*place_of(node)))
+        head = with_attribute(*find_place(owners[0]), name, given)
+        edits = (head, without_element(*find_place(node)))
         reaction = f"ROS 2 ignores <{name}> in <{parent.tag}>"
         assumption = f"<{name}> is read as an attribute of <{owners[0].tag}>"
         yield Slip(edits, reaction, assumption, edits[1].location)
@@ -160,7 +160,7 @@ def _pose_in_one_attribute(node: XacroNode) -> Iterator[Slip]:
     """Yield the origin whose xyz has the numbers of rpy, too."""
     tokens = WORD_OF_VALUE.findall(node.attributes["xyz"])
     if len(tokens) == _POSE and all(map(_NUMBER.fullmatch, tokens)):
-        place = place_of(node)
+        place = find_place(node)
         edits = (
             with_attribute(*place, "rpy", " ".join(tokens[3:])),
             with_attribute(*place, "xyz", " ".join(tokens[:3])),
@@ -197,14 +197,14 @@ def _values_of_children(
             name = "link"
         if name not in absent or name in values or name in known:
             continue
-        value = _value_of(child)
+        value = _read_value(child)
         if _fits(name, value):
             values[name] = " ".join(WORD_OF_VALUE.findall(value))
             removed.append(child)
     return values, removed
 
 
-def _value_of(node: XacroNode) -> str:
+def _read_value(node: XacroNode) -> str:
     """Return the one value that an element has: its text, or that of its only attribute."""
     text = "".join(child for child in node.children if isinstance(child, str)).strip()
     if node.elements or (text and node.attributes) or len(node.attributes) > 1:
@@ -219,7 +219,7 @@ def _named_otherwise(node: XacroNode) -> Iterator[Slip]:
     is_fitting = all(_fits(name, value) for name, value in given.items())
     if not shape or not is_fitting or node.tag.lower() in _NO_SHAPES or ":" in node.tag:
         return
-    source, start = place_of(node)
+    source, start = find_place(node)
     reaction = f"ROS 2 ignores <{node.tag}> in <geometry>"
     assumption = f"<{node.tag}> is read as <{shape}>"
     yield make_slip(renamed_tag(source, start, shape), reaction, assumption)
@@ -239,8 +239,8 @@ def _misplaced(node: XacroNode, parent: XacroNode, around: XacroNode) -> Iterato
         is_right = tag in CHILDREN.get(around.tag, ()) or tag == parent.tag
     if not is_right or (tag in siblings and tag not in _REPEATED):
         return
-    source, start = place_of(node)
-    outer = place_of(parent)[1]
+    source, start = find_place(node)
+    outer = find_place(parent)[1]
     end = markup.element_end(source.text, outer)
     indent = markup.indentation(source.text, outer)
     newline = "\r\n" if "\r\n" in source.text else "\n"
@@ -260,7 +260,7 @@ def _without_geometry(node: XacroNode, parent: XacroNode) -> Iterator[Slip]:
         return
     if sum(child.tag in CHILDREN["geometry"] for child in parent.elements) != 1:
         return
-    source, start = place_of(node)
+    source, start = find_place(node)
     end = markup.element_end(source.text, start)
     text = source.text[start:end]
     edit = source.edit(start, end, f"<geometry>{text}</geometry>")
@@ -282,7 +282,7 @@ def _ends_in_one_tag(joint: XacroNode) -> Iterator[Slip]:
             names = ("parent", "child")
         if not names[0] or node.elements or present & ({"parent", "child"} - {node.tag}):
             continue
-        source, start = place_of(node)
+        source, start = find_place(node)
         end = markup.element_end(source.text, start)
         parent, child = (given[name] for name in names)
         new = "".join(
@@ -297,7 +297,7 @@ def _ends_in_one_tag(joint: XacroNode) -> Iterator[Slip]:
 
 def _ends_as_attributes(joint: XacroNode) -> Iterator[Slip]:
     """Yield the joint whose parent and child are its attributes."""
-    source, start = place_of(joint)
+    source, start = find_place(joint)
     end, is_empty = markup.head_end(source.text, start)
     kept = {
         name: text for name, text in joint.attributes.items() if name not in ("parent", "child")

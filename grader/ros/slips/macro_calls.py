@@ -7,7 +7,7 @@ from itertools import chain
 from grader.base.element_edits import with_attribute
 from grader.base.slips import Slip, make_slip
 from grader.base.text import cut
-from grader.ros.slips.nodes import list_all_values, place_of
+from grader.ros.slips.nodes import find_place, list_all_values
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 from grader.ros.xml.urdf_format import TAGS
 
@@ -44,7 +44,7 @@ def parameter_slips(nodes: Sequence[XacroNode], called: str) -> Iterator[Slip]:
     calls = [node for node in nodes if node.tag == f"xacro:{called}"]
     reaction = f'params="{params}" of the macro {called} does not fit its calls'
     for way in dict.fromkeys((*_declared(macros[0], calls), *_starred(macros[0], calls))):
-        edit = with_attribute(*place_of(macros[0]), "params", way)
+        edit = with_attribute(*find_place(macros[0]), "params", way)
         assumption = f'it is read as params="{cut(way, _MAX_SHOWN)}"'
         yield make_slip((edit,), reaction, assumption)
 
@@ -112,7 +112,7 @@ def _on_other_side(
     call: XacroNode, words: Mapping[str, str], others: Collection[Mapping[str, str]]
 ) -> Iterator[Slip]:
     """Yield the call with the other side in one of its words, if no other call gives that."""
-    source, start = place_of(call)
+    source, start = find_place(call)
     for name, text in words.items():
         for side, others_of_side in _OTHER_SIDES.items():
             for other in others_of_side:

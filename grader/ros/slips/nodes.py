@@ -54,9 +54,9 @@ def list_values(source: Source, start: int) -> Iterator[WrittenValue]:
 def list_all_values(nodes: Iterable[XacroNode]) -> Iterator[WrittenValue]:
     """Yield the values in the start tags of elements."""
     for node in nodes:
-        yield from list_values(*place_of(node))
+        yield from list_values(*find_place(node))
 
 
-def place_of(node: XacroNode) -> tuple[Source, int]:
+def find_place(node: XacroNode) -> tuple[Source, int]:
     """Return the text that an element is written in, and the offset of its start tag."""
     return node.place.source.element(node.place.tag)

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator
 from grader.base.element_edits import renamed_attribute, renamed_tag
 from grader.base.names import folded
 from grader.base.slips import Slip, make_slip
-from grader.ros.slips.nodes import place_of
+from grader.ros.slips.nodes import find_place
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
 # Elements of a sensor, from sdformat's sdf/1.9: sensor.sdf, camera.sdf, imu.sdf, lidar.sdf,
@@ -42,7 +42,7 @@ def gazebo_slips(root: XacroNode, named: Collection[str]) -> Iterator[Slip]:
             meant = _BY_LETTERS.get(folded(node.tag))
             is_of_sensor = node not in gazebo.elements or meant == "sensor"
             if meant not in (None, node.tag) and is_of_sensor and node.tag not in _WORDS:
-                source, start = place_of(node)
+                source, start = find_place(node)
                 edits = renamed_tag(source, start, meant or "")
                 reaction = f"Gazebo does not know <{node.tag}>"
                 assumption = f"<{node.tag}> is read as <{meant}>"
@@ -60,7 +60,7 @@ def _reference_slips(gazebo: XacroNode, named: Collection[str]) -> Iterator[Slip
         return
     [(name, value)] = given.items()
     if value in named or "$" in value:
-        source, start = place_of(gazebo)
+        source, start = find_place(gazebo)
         edits = renamed_attribute(source, start, name, "reference")
         reaction = f"Gazebo does not know the attribute {name} of <gazebo>"
         assumption = f"the attribute {name} of <gazebo> is read as reference"
@@ -72,7 +72,7 @@ def _attribute_slips(sensor: XacroNode) -> Iterator[Slip]:
     for name in sensor.attributes:
         meant = name.lower()
         if meant != name and meant in ("name", "type") and meant not in sensor.attributes:
-            source, start = place_of(sensor)
+            source, start = find_place(sensor)
             edits = renamed_attribute(source, start, name, meant)
             reaction = f"Gazebo does not know the attribute {name} of <{sensor.tag}>"
             assumption = f"the attribute {name} of <{sensor.tag}> is read as {meant}"

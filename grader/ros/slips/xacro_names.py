@@ -8,7 +8,7 @@ from grader.base.names import near
 from grader.base.slips import Slip, make_slip
 from grader.base.source import Edit, Source
 from grader.base.text import cut, enumerated
-from grader.ros.slips.nodes import list_all_values, place_of
+from grader.ros.slips.nodes import find_place, list_all_values
 from grader.ros.xacro.xacro_nodes import XacroNode
 
 _MAX_SHOWN = 60  # characters of a text
@@ -64,7 +64,7 @@ def name_in_braces_slips(nodes: Iterable[XacroNode]) -> Iterator[Slip]:
         match = _IN_BRACES.fullmatch(name)
         if node.tag in _DEFINING and match is not None:
             meant = match["inner"] or match["bare"]
-            edit = with_attribute(*place_of(node), "name", meant)
+            edit = with_attribute(*find_place(node), "name", meant)
             reaction = f"<{node.tag}> gives the name {name}, which is evaluated"
             yield make_slip([edit], reaction, f"the name {name} is read as {meant}")
 

@@ -7,7 +7,7 @@ from functools import partial
 from grader.base.slips import Slip, make_slip
 from grader.base.source import Edit, Source
 from grader.base.text import cut
-from grader.ros.slips.nodes import WrittenValue, list_all_values, list_values, place_of
+from grader.ros.slips.nodes import WrittenValue, find_place, list_all_values, list_values
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 from grader.ros.xml.urdf_format import PARTS
 
@@ -57,7 +57,7 @@ def expression_slips(root: XacroNode, names: set[str]) -> Iterator[tuple[Slip, .
     Of each, yield all ways to read it. `names` are those of properties and parameters.
     """
     for node in walk(root):
-        for value in list_values(*place_of(node)):
+        for value in list_values(*find_place(node)):
             ways = dict.fromkeys(_list_ways(node, value, names))
             if ways:
                 yield tuple(_slip(value, new) for new in ways)

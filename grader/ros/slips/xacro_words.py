@@ -9,7 +9,7 @@ from grader.base.names import near
 from grader.base.slips import Slip, make_slip
 from grader.base.source import Source
 from grader.base.text import cut
-from grader.ros.slips.nodes import place_of
+from grader.ros.slips.nodes import find_place
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
 # The attributes that a tag of xacro has where it is written in full, and others that it may have.
@@ -59,7 +59,7 @@ def attribute_slips(root: XacroNode) -> Iterator[Slip]:
 
 def _with_attributes(node: XacroNode, values: Mapping[str, str]) -> Slip:
     """Return the slip of a tag that has attributes as its text or as its children."""
-    source, start = place_of(node)
+    source, start = find_place(node)
     head = markup.head_end(source.text, start)[0]
     end = markup.element_end(source.text, start)
     given = attributes_text(values)
@@ -70,7 +70,7 @@ def _with_attributes(node: XacroNode, values: Mapping[str, str]) -> Slip:
 
 
 def _renamed(node: XacroNode, name: str, meant: str) -> Slip:
-    source, start = place_of(node)
+    source, start = find_place(node)
     edits = renamed_attribute(source, start, name, meant)
     reaction = f"<{node.tag}> has no attribute {name}"
     assumption = f"the attribute {name} of <{node.tag}> is read as {meant}"

@@ -39,7 +39,7 @@ class Convention(NamedTuple):
     robot: Robot
 
 
-def convention_of(robot: Configuration, reference: Configuration, base: str) -> Convention | None:
+def find_convention(robot: Configuration, reference: Configuration, base: str) -> Convention | None:
     """Return how all is rotated by quarter turns or moved in the frame of `base`.
 
     Returns None if it is not, or not alike.

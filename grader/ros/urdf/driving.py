@@ -155,7 +155,7 @@ def _plan_course(
     text = f"{text}; when its wheels turn forward, {moves}"
     turning = driven.wheels
     course = standing.drive(turning, [1.0] * len(turning), forward)
-    velocity = course.velocity_of(standing.rest.mass_centre)
+    velocity = course.velocity_at(standing.rest.mass_centre)
     joints = tuple(wheel.joint.name for wheel in turning)
     return Drive(standing, text, velocity, course.turn, joints)
 

@@ -82,7 +82,7 @@ class _Frames:
             name = parents[name].parent
         frame = known.get(name) or known.setdefault(name, _Frame(name, name, IDENTITY, 0))
         for joint in reversed(joints.values()):
-            motion, pose = _motion_of(joint, self.position(joint)), None
+            motion, pose = _compute_motion(joint, self.position(joint)), None
             if joint.origin is not None and motion is not None:
                 pose = joint.origin.placed_in(frame.pose)
                 pose = pose if motion is IDENTITY else pose @ motion
@@ -167,7 +167,7 @@ def _mimic_leaders(joint: Joint, robot: Robot) -> Iterable[Joint]:
     return chain.values()
 
 
-def _motion_of(joint: Joint, position: float) -> Transform | None:
+def _compute_motion(joint: Joint, position: float) -> Transform | None:
     """Return T_origin_child.
 
     Returns None if it is undefined, as it is for every position about a zero axis (KDL).
@@ -219,7 +219,7 @@ class _Views(NamedTuple):
     known_parents: Mapping[str, Joint]
 
 
-def _views_of(known: Robot, *, is_guarded: bool) -> _Views:
+def _make_views(known: Robot, *, is_guarded: bool) -> _Views:
     parents = parent_joints(known)
     if not is_guarded:
         return _Views(known, parents, parents)
@@ -264,7 +264,7 @@ class Configuration:
 
     @cached_property
     def _views(self) -> _Views:
-        return _views_of(self.known, is_guarded=self.is_guarded)
+        return _make_views(self.known, is_guarded=self.is_guarded)
 
     @cached_property
     def _frames(self) -> _Frames:
@@ -304,11 +304,11 @@ class Configuration:
         trees: dict[str, list[str]] = {root: [root] for root in self.roots}
         for name in self.parent_joints:
             with suppress(MissingElement):
-                trees[self.root_of(name)].append(name)
+                trees[self.find_root(name)].append(name)
         largest = max(trees.values(), key=len, default=[])
         return tuple(largest)
 
-    def root_of(self, link: str) -> str:
+    def find_root(self, link: str) -> str:
         """Return the root of the tree that a link is in.
 
         Raises MissingElement for a link on a loop of joints.
@@ -414,7 +414,7 @@ class Configuration:
         if below is not None:
             return below
         up, down = self.chain(one), self.chain(other)
-        if self.root_of(one) != self.root_of(other):
+        if self.find_root(one) != self.find_root(other):
             self.pose(other, relative_to=one)
         shared = 0
         while shared < min(len(up), len(down)) and up[shared] is down[shared]:
@@ -497,7 +497,9 @@ class Configuration:
             and all(above.known.mimic is None for above in chain)
         ):
             T_relative_joint = self.pose(joint.child, relative_to=relative_to)
-            turn = _motion_of(joint, angle) or IDENTITY  # everything below the joint turns together
+            turn = (
+                _compute_motion(joint, angle) or IDENTITY
+            )  # everything below the joint turns together
             return T_relative_joint @ turn @ T_relative_joint.inverse()
         moved = self.moved(joint, self.position(joint) + angle).pose(link, relative_to=relative_to)
         return moved @ self.pose(link, relative_to=relative_to).inverse()

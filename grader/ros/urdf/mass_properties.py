@@ -12,7 +12,7 @@ from itertools import combinations, combinations_with_replacement
 from math import hypot, isfinite, nan
 from typing import NamedTuple
 
-from grader.base.transforms import Rotation, Transform, Vector, add_up, dot, middle_of, minus
+from grader.base.transforms import Rotation, Transform, Vector, add_up, dot, minus, weighted_mean
 from grader.ros.urdf.model import (
     INERTIA,
     Box,
@@ -191,7 +191,7 @@ def together(bodies: Iterable[MassProperties]) -> MassProperties:
     """
     every = list(bodies)
     mass = add_up(body.mass for body in every)
-    centre = middle_of([(body.mass, body.centre) for body in every])
+    centre = weighted_mean([(body.mass, body.centre) for body in every])
     moved = [shifted(body.inertia, body.mass, minus(body.centre, centre)) for body in every]
     return MassProperties(mass, centre, _tensor(map(add_up, zip(*moved, strict=True))))
 

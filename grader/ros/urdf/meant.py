@@ -195,11 +195,11 @@ def _repeated_names(root: Element) -> Iterator[MeantName]:
     ends = [end for end in root.iterfind("joint/*") if end.tag in ("parent", "child")]
     used_links = dict.fromkeys(end.get("link") for end in ends)
     used_joints = dict.fromkeys(mimic.get("joint") for mimic in root.iterfind("joint/mimic"))
-    yield from _repeated_names_of(root, "link", used_links)
-    yield from _repeated_names_of(root, "joint", used_joints)
+    yield from _find_repeated(root, "link", used_links)
+    yield from _find_repeated(root, "joint", used_joints)
 
 
-def _repeated_names_of(root: Element, tag: str, used: Iterable[str | None]) -> Iterator[MeantName]:
+def _find_repeated(root: Element, tag: str, used: Iterable[str | None]) -> Iterator[MeantName]:
     by_name: dict[str | None, list[Element]] = {}
     for element in root.iterchildren(tag):
         by_name.setdefault(element.get("name"), []).append(element)

@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterable, Iterator
 from typing import Any, NamedTuple
 
 from grader.base.transforms import AXES, unit
-from grader.files.reading import sha256_of
+from grader.files.reading import hash_bytes
 from grader.ros.urdf.model import (
     Capsule,
     Collision,
@@ -88,7 +88,7 @@ def written_form(root: Element | None, *, is_handed_out: bool = False) -> str:
 
 
 def _hash(content: object) -> str:
-    return sha256_of(repr(content).encode("utf-8", "backslashreplace"))
+    return hash_bytes(repr(content).encode("utf-8", "backslashreplace"))
 
 
 def _extensions(root: Element | None) -> list[tuple[Any, ...]]:

@@ -21,9 +21,9 @@ from grader.base.transforms import (
     cross,
     degrees_between,
     dot,
-    middle_of,
     minus,
     unit,
+    weighted_mean,
 )
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Capsule, Collision, Cylinder, Mesh, Visual
@@ -114,7 +114,7 @@ class Rest(NamedTuple):
         return dot(minus(self.mass_centre, touching[0]), self.up)
 
 
-def body_of(robot: Configuration, base: str) -> _RestingBody:
+def make_body(robot: Configuration, base: str) -> _RestingBody:
     """Return the shapes and the centre of mass of a robot, in the frame of its base.
 
     The shapes of a link are its collision shapes, else its visuals. A link without an <inertial>
@@ -122,13 +122,13 @@ def body_of(robot: Configuration, base: str) -> _RestingBody:
     UnknownShape for a mesh, NotDecided for a robot without shapes or mass, MissingElement where a
     pose is undefined.
     """
-    root = robot.root_of(base)
+    root = robot.find_root(base)
     roots: dict[str, str] = {}
     shapes: list[_LinkShape] = []
     masses: list[tuple[float, Vector]] = []
     for link in robot.robot.links:
         with suppress(MissingElement):  # a link on a loop of joints is in no tree
-            roots[link.name] = robot.root_of(link.name)
+            roots[link.name] = robot.find_root(link.name)
         if roots.get(link.name) != root:
             continue
         solids = solid_shapes(link.collisions) or solid_shapes(link.visuals)
@@ -173,7 +173,7 @@ def _mean(weighted: Sequence[tuple[float, Vector]]) -> Vector:
     """Return the mean of points with weights. Raises NotDecided if all weights are 0."""
     if not 0.0 < add_up(weight for weight, _ in weighted) < inf:
         raise NotDecided("the robot has no mass and no shape with a volume", "a robot has no mass")
-    return middle_of(weighted)
+    return weighted_mean(weighted)
 
 
 def find_rest(body: _RestingBody) -> Rest:
@@ -219,7 +219,7 @@ def _fall(body: _RestingBody, max_tilt: float) -> Iterator[Vector]:
     and that face is its minimum. A robot that then balances is pushed.
     """
     up: Vector = Z_AXIS
-    size = _size_of(body)
+    size = _bound_size(body)
     yield up
     for _ in range(_MAX_STEPS):
         face = _face_below(body, up, size)
@@ -257,7 +257,7 @@ def _follow(body: _RestingBody, start: Vector, face: Vector) -> Vector:
     return best
 
 
-def _size_of(body: _RestingBody) -> float:
+def _bound_size(body: _RestingBody) -> float:
     """Return an upper bound on the distance of a point of the robot from its centre of mass."""
     distances = []
     for _, (geometry, pose) in body.shapes:

@@ -15,10 +15,10 @@ from grader.base.transforms import (
     add_up,
     cross,
     dot,
-    middle_of,
     minus,
     rotation_about,
     unit,
+    weighted_mean,
 )
 from grader.ros.urdf.model import Joint
 from grader.ros.urdf.resting import level_directions, moved
@@ -101,7 +101,7 @@ class Course(NamedTuple):
         2004, section 3.2) by least squares: two of each wheel, one of a wheel with rollers.
         """
         x, y = level_directions(up)
-        middle = mean_of(wheel.contact for wheel in wheels)
+        middle = mean(wheel.contact for wheel in wheels)
         rows: list[tuple[Vector, float]] = []
         wheel_of_row: list[int] = []
         for number, wheel in enumerate(wheels):
@@ -117,10 +117,10 @@ class Course(NamedTuple):
         angle = degrees(atan2(dot(goal, y), dot(goal, x)))
         return cls(up, tuple(wheels), angle, *motion, tuple(slips))
 
-    def velocity_of(self, point: Vector) -> Vector:
+    def velocity_at(self, point: Vector) -> Vector:
         """Return the velocity of a point of the base, in m/s."""
         forward, left = level_directions(self.up)
-        middle = mean_of(wheel.contact for wheel in self.wheels)
+        middle = mean(wheel.contact for wheel in self.wheels)
         swept = cross(self.up, minus(point, middle))
         return moved(
             (0.0, 0.0, 0.0), [(forward, self.forward), (left, self.left), (swept, self.turn)]
@@ -156,13 +156,13 @@ class Course(NamedTuple):
     def sides(self) -> list[float]:
         """How far to the left of the middle each wheel touches the ground, in metres."""
         _, left = level_directions(self.up)
-        middle = mean_of(wheel.contact for wheel in self.wheels)
+        middle = mean(wheel.contact for wheel in self.wheels)
         return [dot(minus(wheel.contact, middle), left) for wheel in self.wheels]
 
 
-def mean_of(points: Iterable[Vector]) -> Vector:
+def mean(points: Iterable[Vector]) -> Vector:
     """Return the mean of points."""
-    return middle_of((1.0, point) for point in points)
+    return weighted_mean((1.0, point) for point in points)
 
 
 def _held_directions(wheel: DrivenWheel, up: Vector) -> list[Vector]:

@@ -12,14 +12,14 @@ from grader.ros.urdf.model import Joint, Link
 from grader.ros.urdf.resting import (
     MAX_SHAPES,
     Rest,
-    body_of,
     find_rest,
     level_directions,
     list_fall,
     lowest_points,
+    make_body,
     solid_shapes,
 )
-from grader.ros.urdf.rolling import Course, DrivenWheel, mean_of
+from grader.ros.urdf.rolling import Course, DrivenWheel, mean
 from grader.ros.urdf.shapes import PlacedShape
 
 _GRAVITY = 9.81  # m/s^2
@@ -60,7 +60,7 @@ class StandingRobot:
         robot.link(self.base)
         for link in named:
             robot.pose(link, relative_to=self.base)
-        self.body = body_of(robot, self.base)
+        self.body = make_body(robot, self.base)
         self.rest: Rest = find_rest(self.body)
         if is_level:
             self.rest = self.rest.leveled(self.named)
@@ -168,7 +168,7 @@ class StandingRobot:
                 if joint.name in [above.name for above in robot.chain(name)]:
                     shapes.append(shape)
             axis = T_base_joint.rotate(robot.axis(joint))
-            contact = mean_of(lowest_points(shapes, up))
+            contact = mean(lowest_points(shapes, up))
             roller = None if rollers is None else rollers[number]
             wheel = DrivenWheel(
                 link, joint, axis, T_base_joint.translation, tuple(shapes), contact, roller

@@ -15,7 +15,7 @@ _MAX_SLOPE = 45.0  # degrees between the axis of a wheel and the level
 _NEARLY = 5.0  # degrees within which an axis is said to be vertical
 
 
-def travel_of(
+def find_travel(
     robot: Configuration, link: str, joint: Joint, base: str, up: Vector
 ) -> tuple[Vector, Literal[""]] | tuple[None, str]:
     """Return the direction in which a small positive rotation drives the base.

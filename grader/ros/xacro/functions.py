@@ -20,8 +20,8 @@ from grader.ros.python.values import (
     Undetermined,
     Value,
     call_plain,
+    charge_str,
     checked_key,
-    str_of,
 )
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
@@ -112,7 +112,7 @@ def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]
 
 
 def _fatal(*parts: Value) -> Value:
-    raise EvaluationFails(" ".join(map(str_of, parts)))
+    raise EvaluationFails(" ".join(map(charge_str, parts)))
 
 
 def _no_path(*_: Value) -> Value:

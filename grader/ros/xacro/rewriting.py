@@ -258,7 +258,7 @@ class _Rewriter:
         self, text: _Written, scope: XacroScope, old: str, new: str, depth: int
     ) -> Iterator[_TextChange]:
         """Yield the changes of one number in an expression with which it has another value."""
-        names = [name for name in _NAME.findall(text.text) if self._definition_of(name, scope)]
+        names = [name for name in _NAME.findall(text.text) if self._find_definition(name, scope)]
         for name in [*dict.fromkeys(names)][:_MAX_ORIGINS]:
             for was, value in self._solved(text, name, scope, old, new):
                 alone = text._replace(text=f"${{{name}}}")
@@ -299,7 +299,7 @@ class _Rewriter:
         A text is the default of this parameter.
         """
         name = text.text[2:-1].strip() if text.text.startswith("${") else ""
-        definition = self._definition_of(name, changed[0].scope)
+        definition = self._find_definition(name, changed[0].scope)
         if definition is None or definition.attribute != "params":
             return []
         calls = {use.call: use.new for use in changed if use.call is not None}
@@ -370,7 +370,7 @@ class _Rewriter:
             inner, was = _negate(inner), _negate(was)
         name = match["argument"]
         definition = (
-            self._texts.defaults.get(name) if name else self._definition_of(match["name"], scope)
+            self._texts.defaults.get(name) if name else self._find_definition(match["name"], scope)
         )
         written = _definition_text(definition) if definition is not None else None
         if definition is not None and written is not None:
@@ -386,7 +386,7 @@ class _Rewriter:
         """Return whether a YAML file gives a text."""
         return any(_LOADED.match(definition.text) for definition in self.definitions(text))
 
-    def _definition_of(self, name: str, scope: XacroScope) -> XacroDefinition | None:
+    def _find_definition(self, name: str, scope: XacroScope) -> XacroDefinition | None:
         holder = scope.holder(name)
         if holder is not None:
             return holder.properties[name].definition
@@ -408,7 +408,7 @@ class _Rewriter:
     def _named(self, text: _Written) -> Iterator[XacroDefinition]:
         for expression in _EXPRESSION.findall(text.text):
             for name in _NAME.findall(expression):
-                definition = self._definition_of(name, text.scope)
+                definition = self._find_definition(name, text.scope)
                 if definition is not None:
                     yield definition
         for argument in re.findall(r"\$\(\s*arg\s+([^\s()]+)\s*\)", text.text):

@@ -14,7 +14,7 @@ from grader.ros.python.values import (
     EvaluationFails,
     Undetermined,
     Value,
-    str_of,
+    charge_str,
     too_large,
 )
 from grader.ros.xacro.functions import GLOBALS
@@ -138,7 +138,7 @@ class Texts:
         """Return the text of a value. Raises Undetermined, OutOfBudget."""
         if isinstance(value, str):
             return value
-        return str_of(self._budget.checked(value))
+        return charge_str(self._budget.checked(value))
 
     def text(self, text: str, scope: XacroScope) -> str:
         """Return the value of a text as it is written into the expanded file."""

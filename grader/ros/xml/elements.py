@@ -21,7 +21,7 @@ _INSTALLED = re.compile(
 )  # what the expansion makes of $(find package)
 
 
-def name_of(element: Element) -> str:
+def read_name(element: Element) -> str:
     """Return the name of an element as it is written, with its prefix."""
     return _name_with_prefix(str(element.tag), element)
 
@@ -34,7 +34,7 @@ def _name_with_prefix(name: str, element: Element) -> str:
     return f"{space if not prefix or _MADE_UP.fullmatch(prefix) else prefix}:{local}"
 
 
-def attributes_of(element: Element) -> list[tuple[str, str]]:
+def list_attributes(element: Element) -> list[tuple[str, str]]:
     """Return the attributes of an element, by their names as they are written."""
     return [(_name_with_prefix(str(key), element), str(value)) for key, value in element.items()]
 

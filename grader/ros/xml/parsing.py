@@ -270,7 +270,7 @@ class XmlFile:
             return Location(self.source.path, 1, 1)
 
 
-def root_of(text: str) -> tuple[Element | None, Source]:
+def parse_root(text: str) -> tuple[Element | None, Source]:
     """Return the root of a text, and the text that its places are in.
 
     Where it is no XML, it is read as ROS 2 reads it.

@@ -285,7 +285,7 @@ class _Repairer:
             self._robot = tag.offset
         if self._open and self._is_open_call(self._open[-1].name):
             self._leave(len(self._open) - 1, tag.offset)
-        parents = _parents_of(tag.name)
+        parents = _list_parents(tag.name)
         around = [opened.name for opened in self._open]
         if (
             around
@@ -458,7 +458,7 @@ def _readable_attributes(tag: str, text: str) -> dict[str, str]:
     nameless = _NAMELESS.match(text)
     if nameless is not None:
         main = _main_attribute(tag)
-        if main not in attributes and _is_value_of(main, nameless[1]):
+        if main not in attributes and _has_numbers(main, nameless[1]):
             return {main: decode(nameless[1]), **attributes}
     return attributes
 
@@ -469,7 +469,7 @@ def _loses_words(text: str, attributes: Mapping[str, str]) -> bool:
     return not kept.issuperset(_WORD.findall(decode(text)))
 
 
-def _parents_of(tag: str) -> set[str]:
+def _list_parents(tag: str) -> set[str]:
     """Return the tags of the elements in which an element of this tag may be."""
     if tag in _TOP:
         return {"robot", *_AROUND}
@@ -494,7 +494,7 @@ def _other_attribute(tag: str, given: set[str], value: str) -> str:
     This attribute is not given.
     """
     known = TAGS[tag].attributes if tag in TAGS else {}
-    absent = [name for name in known if name not in given and _is_value_of(name, value)]
+    absent = [name for name in known if name not in given and _has_numbers(name, value)]
     needed = [name for name in absent if name in REQUIRED.get(tag, ())]
     candidates = needed or absent
     if len(candidates) == 1:
@@ -502,7 +502,7 @@ def _other_attribute(tag: str, given: set[str], value: str) -> str:
     return ""
 
 
-def _is_value_of(attribute: str, value: str) -> bool:
+def _has_numbers(attribute: str, value: str) -> bool:
     """Return whether a value has the numbers of an attribute; a text may be anything."""
     parts = PARTS.get(attribute, ())
     return bool(attribute) and (not parts or len(numbers_in(value)) == len(parts))

@@ -67,7 +67,7 @@ def rows_of_bridge(workspace: Workspace, node: StartedNode) -> Iterator[BridgeRo
     for given in node.parameters or ():
         file = given.values.get("config_file")
         path = (
-            workspace.installed.source_of(file.value)
+            workspace.installed.find_source(file.value)
             if file and isinstance(file.value, str)
             else None
         )
@@ -89,7 +89,9 @@ def are_rows_known(workspace: Workspace, node: StartedNode) -> bool:
         if given.unknown or given.path:
             return False
         if file is not None:
-            path = workspace.installed.source_of(file.value) if isinstance(file.value, str) else ""
+            path = (
+                workspace.installed.find_source(file.value) if isinstance(file.value, str) else ""
+            )
             if not isinstance(workspace.installed.yaml.get(path or ""), YamlNode):
                 return False
     return node.namespace in ("", "/") and node.remaps is not None

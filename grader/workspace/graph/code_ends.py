@@ -69,7 +69,7 @@ class End(NamedTuple):
 
 def opened_by(workspace: Workspace, node: StartedNode, launch: int = -1) -> Iterator[End]:
     """Yield what the nodes of a program open as it is started. Raises NotDecided."""
-    for own_node in workspace.code.all_nodes_of(node):
+    for own_node in workspace.code.find_all_nodes(node):
         yield from opened_by_code(workspace, node, own_node, launch)
 
 
@@ -108,12 +108,12 @@ def _full_name(node: StartedNode, name: str | None) -> str:
     return full
 
 
-def frames_of(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str | None, NodeFrame]]:
+def list_frames(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str | None, NodeFrame]]:
     """Yield the frames that the nodes of a program name as it is started, each with its name.
 
     It is None for one that is not known. Raises NotDecided.
     """
-    for own_node in workspace.code.all_nodes_of(node):
+    for own_node in workspace.code.find_all_nodes(node):
         if not own_node.frames:
             continue
         workspace.charge(len(own_node.frames))
@@ -157,10 +157,10 @@ def _values_given(
         for declared in own_node.parameters
         if declared.name is not None and declared.is_declared
     }
-    package = workspace.package_of(node)
+    package = workspace.find_package(node)
     assert package is not None  # that has the code of the node
     given = workspace.parameters.read_given(
-        package, node, workspace.code.name_of(node) or own_node.name or ""
+        package, node, workspace.code.find_name(node) or own_node.name or ""
     )
     if given.unknown:
         return {}
@@ -184,12 +184,12 @@ def _names(
         items = [_ANY]
     names: list[str | None] = []
     for item in items[:_MAX_NAMES]:
-        name = "".join(_text_of(part, node, values, item) for part in endpoint.parts)
+        name = "".join(_make_text(part, node, values, item) for part in endpoint.parts)
         names.append(name if name.strip(f"{_ANY}/") else None)
     return names
 
 
-def _text_of(part: NamePart, node: StartedNode, values: Mapping[str, Value], item: Value) -> str:
+def _make_text(part: NamePart, node: StartedNode, values: Mapping[str, Value], item: Value) -> str:
     """Return the text that a part is for a node, where `item` is the one of its list."""
     match part.kind:
         case "text":

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from grader.base.text import quoted
 from grader.ros.installation.places import share_parts
 from grader.ros.launch.launch_model import Launch
-from grader.ros.launch.node_parameters import controllers_of
+from grader.ros.launch.node_parameters import list_controllers
 from grader.ros.package.finding import package_around
 from grader.ros.package.package import Package
 from grader.workspace.model.known_robots import KnownRobot
@@ -75,15 +75,15 @@ class _RobotGroups:
         self._together: list[set[str]] = []  # the packages of which each launch file has something
         for number, (package, launch) in enumerate(workspace.launches.roots):
             workspace.charge(1 + len(launch.nodes))
-            self._started.append(self._robots_of(launch))
-            for path in self._files_of(launch):
+            self._started.append(self._find_robots(launch))
+            for path in self._list_files(launch):
                 self._launches.setdefault(path, []).append(number)
-            self._together.append({package.name, *_packages_of(launch)})
+            self._together.append({package.name, *_list_packages(launch)})
         self._dependencies = {
             package.name: _names_below(package, workspace.packages)
             for package in workspace.packages
         }
-        self._robot_packages = [self._package_of(robot.path) for robot in self._known]
+        self._robot_packages = [self._find_package(robot.path) for robot in self._known]
 
     def for_file(self, path: str) -> ComparedRobots:
         """Return the robots for a parameter file."""
@@ -97,7 +97,7 @@ class _RobotGroups:
             robots |= {robot.path: robot for robot in started or ()}
         if are_known and robots:
             return self._of_started(robots.values())
-        related = self._related_to(self._package_of(path))
+        related = self._related_to(self._find_package(path))
         robots |= {robot.path: robot for robot in related}
         return ComparedRobots(tuple(robots.values()))
 
@@ -113,19 +113,19 @@ class _RobotGroups:
         # Of the only robot, all is said without its name.
         return ComparedRobots(tuple(robots), are_started=not self._is_single)
 
-    def _robots_of(self, launch: Launch) -> tuple[KnownRobot, ...] | None:
+    def _find_robots(self, launch: Launch) -> tuple[KnownRobot, ...] | None:
         """Return the robots that a launch file starts; None where not all are known."""
         by_path = {robot.path: robot for robot in self._known}
         robots: dict[str, KnownRobot] = {}
         for named in launch.named("urdf"):
-            path = self._workspace.installed.source_of(named.path) if named.path else None
-            if path not in by_path or len(self._arguments_of[named.path or ""]) > 1:
+            path = self._workspace.installed.find_source(named.path) if named.path else None
+            if path not in by_path or len(self._list_arguments[named.path or ""]) > 1:
                 return None
             robots[path] = by_path[path]
         return None if launch.more or not robots else tuple(robots.values())
 
     @cached_property
-    def _arguments_of(self) -> Mapping[str, set[tuple[tuple[str, str | None], ...]]]:
+    def _list_arguments(self) -> Mapping[str, set[tuple[tuple[str, str | None], ...]]]:
         """The arguments of xacro under which launch files read robots, by the paths of these.
 
         A robot is known under one of them only.
@@ -136,14 +136,14 @@ class _RobotGroups:
                 arguments.setdefault(named.path or "", set()).add(named.arguments)
         return arguments
 
-    def _files_of(self, launch: Launch) -> Iterator[str]:
+    def _list_files(self, launch: Launch) -> Iterator[str]:
         """Yield the parameter files that the nodes and controllers of a launch file get."""
         installed = self._workspace.installed
         for node in launch.nodes:
             yield from self._workspace.parameters.files_given(node)
-            for controller in (controllers_of(node) or ()) if node.executable in SPAWNERS else ():
+            for controller in (list_controllers(node) or ()) if node.executable in SPAWNERS else ():
                 for given in controller.parameters or ():
-                    path = installed.source_of(given.path) if given.path else None
+                    path = installed.find_source(given.path) if given.path else None
                     if path is not None:
                         yield path
 
@@ -151,11 +151,11 @@ class _RobotGroups:
         """Return the robots that give a file to the controller manager in Gazebo."""
         giving: list[KnownRobot] = []
         for robot, given in self._workspace.robots.files_in_gazebo:
-            if self._workspace.installed.source_of(given.path) == path:
+            if self._workspace.installed.find_source(given.path) == path:
                 giving.append(robot)
         return giving
 
-    def _package_of(self, path: str) -> Package | None:
+    def _find_package(self, path: str) -> Package | None:
         return package_around(self._workspace.packages, path)
 
     def _related_to(self, package: Package | None) -> Iterator[KnownRobot]:
@@ -184,7 +184,7 @@ class _RobotGroups:
         return False
 
 
-def _packages_of(launch: Launch) -> Iterator[str]:
+def _list_packages(launch: Launch) -> Iterator[str]:
     """Yield the packages of the nodes that a launch file starts, and of the files that it names."""
     for node in launch.nodes:
         yield node.package

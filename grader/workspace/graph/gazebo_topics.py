@@ -29,7 +29,7 @@ def gazebo_topics(workspace: Workspace) -> Iterator[GazeboTopic]:
                 for name, kind in sensor_topics(sensor, child):
                     yield GazeboTopic(name, kind, is_input=False, location=place(child))
         for plugin in root.iter("plugin"):
-            system = gazebo().system.get(system_of(plugin), NO_SYSTEM)
+            system = gazebo().system.get(name_system(plugin), NO_SYSTEM)
             for is_input, topics in ((True, system.subscriptions), (False, system.publishers)):
                 for tag, kind in topics.items():
                     for child in plugin.iterchildren(tag):
@@ -60,7 +60,7 @@ def sensor_topics(sensor: Element, element: Element) -> Iterator[tuple[str, str]
             yield f"{above}/{last}".removeprefix("/"), kind
 
 
-def system_of(plugin: Element) -> str:
+def name_system(plugin: Element) -> str:
     """Return the name of the class of a system, such as DiffDrive."""
     return plugin.get("name", "").rpartition("::")[2]
 

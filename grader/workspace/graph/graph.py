@@ -13,7 +13,7 @@ from grader.ros.nodes.node_facts import EndpointKind
 from grader.ros.package.package import Package
 from grader.workspace.graph.bridge_rows import BridgeRow, bridge_rows
 from grader.workspace.graph.code_ends import End, EndSource
-from grader.workspace.graph.node_ends import ends_of
+from grader.workspace.graph.node_ends import list_ends
 from grader.workspace.graph.running_nodes import RunningNode, nodes_in
 from grader.workspace.graph.transform_edges import Edge, edges_in
 from grader.workspace.model.workspace import Workspace
@@ -29,7 +29,7 @@ _READ: tuple[EndSource, ...] = ("code", "controller")
 class Graph:
     """What runs after each launch file of a workspace is launched on its own.
 
-    `graph_of` makes it once; the rules of topics, services, messages and transforms ask it.
+    `make_graph` makes it once; the rules of topics, services, messages and transforms ask it.
 
     The iterators charge the budget of the workspace for what they yield, and raise NotDecided.
     """
@@ -52,7 +52,7 @@ class Graph:
             self.workspace.charge(1 + len(file.nodes))
             for node in file.nodes:
                 if node.when is not False:
-                    ends += ends_of(self.workspace, launch, package, node)
+                    ends += list_ends(self.workspace, launch, package, node)
         return ends
 
     @cached_property
@@ -117,7 +117,7 @@ class Graph:
 
 
 @lru_cache(maxsize=2)
-def graph_of(workspace: Workspace) -> Graph:
+def make_graph(workspace: Workspace) -> Graph:
     """Return the graph of a workspace, which is made once."""
     return Graph(workspace)
 

@@ -33,7 +33,7 @@ def graph_form(graph: LaunchGraph) -> str:
             neighbours[name].append((look, place))
     for _ in range(_ROUNDS):
         parts = _refined(parts, neighbours)
-    return _hash_of("\n".join(sorted(parts.values())))
+    return _hash_text("\n".join(sorted(parts.values())))
 
 
 def _is_of_code(node: GraphNode, end: GraphEnd) -> bool:
@@ -48,9 +48,9 @@ def _refined(
     refined: _Parts = {}
     for place, what in parts.items():
         around = sorted(f"{look} {parts[other]}" for look, other in neighbours[place])
-        refined[place] = _hash_of("\n".join([what, *around]))
+        refined[place] = _hash_text("\n".join([what, *around]))
     return refined
 
 
-def _hash_of(text: str) -> str:
+def _hash_text(text: str) -> str:
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()

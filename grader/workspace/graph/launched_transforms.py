@@ -6,12 +6,12 @@ A node of own code is read with what it gives to a broadcaster, so that each fra
 from collections.abc import Collection, Iterator
 
 from grader.ros.known.end_rows import opened_ends
-from grader.ros.known.package_rows import package_row, transforms_of
+from grader.ros.known.package_rows import find_transforms, package_row
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.static_transforms import STATIC_PUBLISHER
 from grader.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
 from grader.workspace.graph.code_ends import transforms_sent
-from grader.workspace.graph.gazebo_topics import roots, system_of
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.launch_graph import (
     GraphNode,
     GraphTransform,
@@ -57,7 +57,7 @@ def transforms_in(
             )
     for node in _launched_nodes(launch, without):
         yield from _bridged_by_default(workspace, node)
-        for facts in workspace.code.nodes_of(node):
+        for facts in workspace.code.find_nodes(node):
             for parent, child, sent in transforms_sent(workspace, node, facts):
                 is_certain = publishes_as_named(node) and not sent.is_conditional
                 is_certain = is_certain and bool(parent and child)
@@ -82,7 +82,7 @@ def _bridged_by_default(workspace: Workspace, node: StartedNode) -> Iterator[Gra
         for plugin in root.iter("plugin"):
             frames = frames_of_system(plugin) if plugin.find("tf_topic") is None else None
             if frames is not None:
-                by = f"the system {system_of(plugin)} of Gazebo"
+                by = f"the system {name_system(plugin)} of Gazebo"
                 is_certain = f"model/{root.get('name')}/tf" in topics and node.when is True
                 yield GraphTransform(*frames, by, place(plugin), is_certain=is_certain)
 
@@ -107,9 +107,9 @@ def _launched_nodes(launch: Launch, without: Collection[str]) -> list[StartedNod
 def is_for_transforms(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether a program is known to publish transforms, or does nothing else."""
     program = (node.package, node.executable)
-    if program == STATIC_PUBLISHER or transforms_of("/".join(program)):
+    if program == STATIC_PUBLISHER or find_transforms("/".join(program)):
         return True
-    own_nodes = workspace.code.nodes_of(node)
+    own_nodes = workspace.code.find_nodes(node)
     return bool(own_nodes) and not any(facts.endpoints for facts in own_nodes)
 
 
@@ -129,7 +129,7 @@ def unread_transforms(
     read_at = {node.location for node in launch.nodes}  # others are included, or components
     for node in _launched_nodes(launch, without):
         reason = ""
-        if workspace.package_of(node) is not None:
+        if workspace.find_package(node) is not None:
             own_programs.add(node.name)
             reason = _why_own_is_unread(workspace, node)
         elif _topics_of_transforms(workspace, node):
@@ -148,17 +148,17 @@ def unread_transforms(
 
 def _why_own_is_unread(workspace: Workspace, node: StartedNode) -> str:
     """Return why own code may publish transforms that are not known; empty if it may not."""
-    own_nodes = workspace.code.nodes_of(node)
+    own_nodes = workspace.code.find_nodes(node)
     if not own_nodes:
         return f"the code of {node.executable} is not read"
     for facts in own_nodes:
         if facts.doubts:
             return facts.doubts[0].reason
-    package = workspace.package_of(node)
+    package = workspace.find_package(node)
     assert package is not None  # that has the code
     code = workspace.code.by_package[package.name]
     read = {sent.location.path for facts in code.nodes for sent in facts.transforms}
-    for source in workspace.texts.sources_of(package, _PROGRAM_ENDINGS):
+    for source in workspace.texts.read_sources(package, _PROGRAM_ENDINGS):
         if source.path not in read and any(word in source.text for word in _SENDING):
             return f"what {source.path} publishes is not known"
     return ""
@@ -172,7 +172,7 @@ def _is_still(node: GraphNode) -> bool:
         programs = row.program.values()
         publishes = package in _PUBLISHING or any(each.transforms for each in programs)
     else:
-        publishes = bool(transforms_of(node.program))
+        publishes = bool(find_transforms(node.program))
     return node.kind == "controller" or ("frames" in row.without and not publishes)
 
 

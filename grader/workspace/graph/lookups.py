@@ -6,7 +6,7 @@ from typing import Literal, NamedTuple
 
 from grader.base.source import Location
 from grader.ros.nodes.node_facts import NodeFrame
-from grader.workspace.graph.code_ends import frames_of
+from grader.workspace.graph.code_ends import list_frames
 from grader.workspace.model.code_text import code_alone
 from grader.workspace.model.workspace import Workspace
 
@@ -84,7 +84,7 @@ def _texts_with_lookups(workspace: Workspace) -> Mapping[str, str]:
     """Return the texts of code by the paths of the files."""
     texts = {}
     for package in workspace.packages:
-        for source in workspace.texts.sources_of(package, (".py", *_CPP)):
+        for source in workspace.texts.read_sources(package, (".py", *_CPP)):
             texts[source.path] = source.text
     return texts
 
@@ -110,9 +110,9 @@ def _read_lookups(workspace: Workspace) -> Iterator[_LookedUp]:
     for _, launch in workspace.launches.roots:
         nodes += [component.node for component in launch.components if component.node is not None]
     for node in nodes:
-        started.update(facts.location for facts in workspace.code.nodes_of(node))
+        started.update(facts.location for facts in workspace.code.find_nodes(node))
         if node.when is not False:
-            yield from _pairs(frames_of(workspace, node), node.executable)
+            yield from _pairs(list_frames(workspace, node), node.executable)
     for code in workspace.code.by_package.values():
         for facts in code.nodes:
             if facts.location not in started:
@@ -138,6 +138,6 @@ def _may_look_up_others(workspace: Workspace, lookups: Sequence[_LookedUp]) -> b
         return True
     texts = [*workspace.texts.python_texts]
     for package in workspace.packages:
-        texts += [file.text for file in workspace.texts.sources_of(package, _CPP)]
+        texts += [file.text for file in workspace.texts.read_sources(package, _CPP)]
     words = _LOOKUPS if not lookups else _OTHER_LOOKUPS
     return any(word in text for text in texts for word in words)

@@ -127,7 +127,7 @@ class _WaySearch:
         for placed in self._named("subscription", topic):
             is_met = not sent or any(not fault_between(other, placed.end) for other in sent)
             if is_met and self._carries(placed.node):
-                yield placed.node, self._doubt_of(placed)
+                yield placed.node, self._find_doubt(placed)
         for number in self._reading_more:
             if self._carries(number):
                 yield number, why_more(self._nodes[number])
@@ -144,11 +144,11 @@ class _WaySearch:
         """Return why it is not certain that a node publishes a topic; None if it does not."""
         for placed in self._named("publisher", topic):
             if placed.node == number:
-                return self._doubt_of(placed)
+                return self._find_doubt(placed)
         node = self._nodes[number]
         return why_more(node) if not self._is_certain and _may_send_more(node) else None
 
-    def _doubt_of(self, placed: _NumberedEnd) -> str:
+    def _find_doubt(self, placed: _NumberedEnd) -> str:
         """Return why it is not certain that a message goes through an end of a node."""
         node = self._nodes[placed.node]
         if node.program.startswith(_BRIDGES):
@@ -173,7 +173,7 @@ class _WaySearch:
                 for placed in self._named(OPPOSITES[end.kind], end.name):
                     offered, asked = (end, placed.end) if end.is_offered else (placed.end, end)
                     if self._carries(placed.node) and not fault_between(offered, asked):
-                        yield placed.node, doubt or self._doubt_of(placed)
+                        yield placed.node, doubt or self._find_doubt(placed)
         for other in self._held_by.get(number, ()):
             yield other, self._nodes[other].doubt
         if not self._is_certain:

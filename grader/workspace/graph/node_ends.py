@@ -46,7 +46,7 @@ def deciding_parameter(end: End) -> str | None:
     return command.parameter
 
 
-def ends_of(
+def list_ends(
     workspace: Workspace, launch: int, package: Package, node: StartedNode
 ) -> Iterator[End]:
     """Yield the ends of a node that a launch file of a package starts. Raises NotDecided."""

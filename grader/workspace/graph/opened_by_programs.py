@@ -22,7 +22,7 @@ def shown_type(name: str | None) -> str:
     return (name or "").replace(".", "/")
 
 
-def release_of(workspace: Workspace) -> Release:
+def last_release(workspace: Workspace) -> Release:
     """Return the release of a workspace: of several the last one."""
     return max(workspace.releases, key=RELEASES.index, default=_USUAL)
 
@@ -42,7 +42,7 @@ def ends_of_row(
         yield _end(kind, name, message, node, node.location)
     for varying in row.varying:
         if varying.is_in(release):
-            for name, message, location, doubt in _names_of(varying, given, node.location):
+            for name, message, location, doubt in _list_names(varying, given, node.location):
                 yield _end(varying.kind, name, message, node, location, doubt)
 
 
@@ -57,7 +57,7 @@ def _end(
     return GraphEnd(kind, full, shown_type(message), at, doubt=doubt)
 
 
-def _names_of(
+def _list_names(
     end: VaryingEnd, given: NodeParameters, at: Location
 ) -> Iterator[tuple[str, str, Location, str]]:
     """Yield name and type of an end, where its name is written, and why it may not be there."""
@@ -73,7 +73,7 @@ def _names_of(
             name = value.value
             if end.is_below:
                 name = f"{parameter.split('.')[-2]}/{name}"
-            yield name, _type_of(end, parameter, given), value.location, doubt
+            yield name, _find_type(end, parameter, given), value.location, doubt
         elif isinstance(value.value, Unknown):
             yield PART_UNKNOWN, end.type, value.location, value.value.reason
     if not is_named and end.name:
@@ -81,7 +81,7 @@ def _names_of(
         yield end.name, end.type, at, doubt or unknown
 
 
-def _type_of(end: VaryingEnd, parameter: str, given: NodeParameters) -> str:
+def _find_type(end: VaryingEnd, parameter: str, given: NodeParameters) -> str:
     """Return the type of an end that a parameter names."""
     if not end.type_parameter:
         return end.type

@@ -53,7 +53,7 @@ def _plugin_node(
         location,
         namespace=_text(plugin, "ros/namespace"),
         node_name=plugin.get("name", ""),
-        remaps=tuple(_remaps_of(plugin)),
+        remaps=tuple(_list_remaps(plugin)),
     )
     values: dict[str, ParameterValue] = {}
     for child in plugin.iterchildren("*"):
@@ -76,7 +76,7 @@ def _text(plugin: Element, path: str) -> str:
     return (plugin.findtext(path) or "").strip()
 
 
-def _remaps_of(plugin: Element) -> Iterator[tuple[str, str]]:
+def _list_remaps(plugin: Element) -> Iterator[tuple[str, str]]:
     """Yield the remappings of a plug-in: ~/out:=scan."""
     for element in plugin.iterfind("ros/remapping"):
         name, _, to = (element.text or "").strip().partition(":=")

@@ -38,11 +38,11 @@ def nodes_in(workspace: Workspace, launch: int) -> Iterator[RunningNode]:
     for node in file.nodes:
         if node.when is False:
             continue
-        name = _full_name(node, workspace.code.name_of(node))
+        name = _full_name(node, workspace.code.find_name(node))
         does_end = node.executable in SPAWNERS
         yield RunningNode(name, "program", launch, node.when, node.location, node, does_end)
         if node.executable == CONTROL_NODE:
-            yield from _controllers_of(workspace, launch, node)
+            yield from _list_controllers(workspace, launch, node)
     places = {node.location for node in file.nodes}
     for container in file.containers:
         if container.when is not False and container.location not in places:
@@ -53,7 +53,7 @@ def nodes_in(workspace: Workspace, launch: int) -> Iterator[RunningNode]:
             yield RunningNode(None, "component", launch, component.when, component.location, None)
 
 
-def _controllers_of(
+def _list_controllers(
     workspace: Workspace, launch: int, manager: StartedNode
 ) -> Iterator[RunningNode]:
     """Yield the controllers that a launch file spawns, in the process of their manager."""

@@ -26,7 +26,7 @@ _TOOLS = {
 def rviz_files(workspace: Workspace, launch: Launch) -> Sequence[RvizFile]:
     """Return the files that a launch file gives RViz, as far as they are in the workspace."""
     named = launch.named("rviz")
-    paths = {workspace.installed.source_of(each.path or "") for each in named}
+    paths = {workspace.installed.find_source(each.path or "") for each in named}
     files: list[RvizFile] = []
     for package in workspace.packages:
         for path in package.rviz_files:

@@ -13,7 +13,7 @@ from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.package_rows import controller_row
 from grader.ros.launch.launch_model import Launch, StartedNode
-from grader.ros.launch.node_parameters import controllers_of
+from grader.ros.launch.node_parameters import list_controllers
 from grader.ros.nodes.node_facts import Endpoint, EndpointKind
 from grader.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.workspace.model.workspace import Workspace
@@ -102,13 +102,13 @@ def controller_endpoints(
         if name not in remaps:
             continue
         started = node._replace(node_name=name, remaps=(*remaps[name], *node.remaps))
-        for kind, written, message in _topics_of(workspace, controller):
+        for kind, written, message in _list_topics(workspace, controller):
             topic = started.topic(written)
             if topic is not None:
                 yield name, Endpoint(kind, message, topic, controller.location)
 
 
-def _topics_of(
+def _list_topics(
     workspace: Workspace, controller: Controller
 ) -> Iterator[tuple[EndpointKind, str, str]]:
     """Yield kind, name and type of the topics that a controller opens."""
@@ -133,7 +133,7 @@ def spawned_controllers(
     remaps: dict[str | None, tuple[tuple[str, ...], ...]] = {}
     for number, spawner in workspace.launches.launched:
         if number == launch and spawner.executable in SPAWNERS and spawner.when:
-            for controller in controllers_of(spawner) or ():
+            for controller in list_controllers(spawner) or ():
                 remaps[controller.node_name] = controller.remaps or ()
     return remaps
 
@@ -155,7 +155,7 @@ def spawned_by(launch: Launch) -> _Spawned:
     for node in launch.nodes:
         if node.package != MANAGER or node.executable not in SPAWNERS:
             continue
-        started = controllers_of(node)
+        started = list_controllers(node)
         is_known = is_known and started is not None and node.when is not None
         if node.when:
             first = first or node.location

@@ -16,7 +16,7 @@ from grader.ros.known.package_rows import controller_row, package_row, program_r
 from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import GivenParameters, Launch, PassedArguments, StartedNode
-from grader.ros.launch.node_parameters import NodeParameters, controllers_of
+from grader.ros.launch.node_parameters import NodeParameters, list_controllers
 from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
@@ -34,8 +34,8 @@ from grader.workspace.graph.launch_graph import (
     has_more_connections,
 )
 from grader.workspace.graph.launched_transforms import transforms_in
-from grader.workspace.graph.node_ends import ends_of
-from grader.workspace.graph.opened_by_programs import ends_of_row, release_of, shown_type
+from grader.workspace.graph.node_ends import list_ends
+from grader.workspace.graph.opened_by_programs import ends_of_row, last_release, shown_type
 from grader.workspace.graph.plugin_nodes import plugin_nodes
 from grader.workspace.graph.rviz_ends import ends_of_displays, ends_of_tools, rviz_files
 from grader.workspace.graph.started_controllers import (
@@ -66,12 +66,12 @@ class _Making(NamedTuple):
 def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
     """Return what runs after a launch file is launched, by its number among the roots."""
     package, launch = workspace.launches.roots[number]
-    making = _Making(workspace, number, package, launch, release_of(workspace))
+    making = _Making(workspace, number, package, launch, last_release(workspace))
     nodes: list[GraphNode] = []
     processes: list[EndedProcess] = []
     not_started: list[EndedProcess] = []
     for process_number, node in enumerate(launch.nodes):
-        process = EndedProcess(node.name, node.location, _doubt_of(node))
+        process = EndedProcess(node.name, node.location, _find_doubt(node))
         if node.when is False:
             not_started.append(process)
         elif _is_process(node):
@@ -108,7 +108,7 @@ def _start(launch: Launch) -> Location:
     return Location(launch.source.path, 1, 1)
 
 
-def _doubt_of(node: StartedNode) -> str:
+def _find_doubt(node: StartedNode) -> str:
     return _AT_RUN_TIME if node.when is None else ""
 
 
@@ -123,16 +123,16 @@ def _is_process(node: StartedNode) -> bool:
 def _nodes_of_program(making: _Making, node: StartedNode) -> Iterator[GraphNode]:
     """Yield the nodes of a program: those of own code, each, or that of a known one."""
     workspace = making.workspace
-    if workspace.package_of(node) is None:
+    if workspace.find_package(node) is None:
         yield from _known_nodes(making, node, "program")
         return
-    own_nodes = workspace.code.nodes_of(node)
+    own_nodes = workspace.code.find_nodes(node)
     for facts in own_nodes:
         yield _own_node(making, node, facts, "program")
     if not own_nodes:
         name = _full_name(node, node.node_name)
         reason = f"the code of {node.executable} is not read"
-        doubt = _doubt_of(node)
+        doubt = _find_doubt(node)
         yield GraphNode(name, node.name, "program", node.location, (), doubt, reason)
 
 
@@ -195,7 +195,7 @@ def _doubt_of_code(workspace: Workspace, node: StartedNode, facts: NodeFacts) ->
 def _graph_node(node: StartedNode, name: str | None, kind: GraphNodeKind, inside: str) -> GraphNode:
     """Return a started node under a name, without what it opens."""
     full, at = _full_name(node, name), node.location
-    return GraphNode(full, node.name, kind, at, doubt=_doubt_of(node), inside=inside)
+    return GraphNode(full, node.name, kind, at, doubt=_find_doubt(node), inside=inside)
 
 
 def _shown(ends: Sequence[GraphEnd]) -> tuple[GraphEnd, ...]:
@@ -293,7 +293,7 @@ def _ends_for_rules(making: _Making, node: StartedNode) -> Iterator[GraphEnd]:
         for row in rows_of_bridge(making.workspace, node):
             for kind in ("publisher", "subscription"):
                 notes[kind, f"/{row.ros}"] = f"{row.gz} of Gazebo ({row.gz_type})"
-    for end in ends_of(making.workspace, making.number, making.package, node):
+    for end in list_ends(making.workspace, making.number, making.package, node):
         if end.source in ("program", "bridge"):
             note = notes.get((end.kind, end.name), "")
             yield GraphEnd(
@@ -339,7 +339,7 @@ def _components(making: _Making) -> Iterator[GraphNode]:
             reason = "which class is loaded is not evaluated"
             yield GraphNode("", "a component", "component", at, (), doubt, reason, (), inside)
             continue
-        own_nodes = making.workspace.code.nodes_of(node)
+        own_nodes = making.workspace.code.find_nodes(node)
         if own_nodes:
             yield _own_node(making, node, own_nodes[0], "component", inside)
         else:
@@ -382,7 +382,7 @@ def _spawned_nodes(launch: Launch) -> list[tuple[StartedNode, StartedNode]]:
     named = []
     for node in launch.nodes:
         if node.executable in SPAWNERS and node.when is not False:
-            named += [(node, started) for started in controllers_of(node) or ()]
+            named += [(node, started) for started in list_controllers(node) or ()]
     return named
 
 
@@ -395,7 +395,7 @@ def _controller(
 ) -> GraphNode:
     """Return a controller as a node."""
     node = given.node
-    name, doubt = _full_name(node, node.node_name), _doubt_of(spawner)
+    name, doubt = _full_name(node, node.node_name), _find_doubt(spawner)
     if controller is None:
         reason = "no file defines it"
         at = spawner.location
@@ -432,7 +432,7 @@ def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterat
                 parameters=_parameters_passed(passed, included.parameters),
             )
             if _is_process(node):
-                processes.append(EndedProcess(included.node, node.location, _doubt_of(node)))
+                processes.append(EndedProcess(included.node, node.location, _find_doubt(node)))
             else:
                 yield from _known_nodes(making, node, "program")
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from grader.base.source import Location
 from grader.ros.xml.parsing import XmlFile
-from grader.workspace.graph.gazebo_topics import roots, system_of
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.started_controllers import defined_controllers
 from grader.workspace.model.workspace import Workspace
 
@@ -61,8 +61,8 @@ def started_worlds(workspace: Workspace) -> _StartedWorlds:
         if any(root is other for other in others):
             continue
         for plugin in root.iter("plugin"):
-            system, library = system_of(plugin), plugin.get("filename", "")
-            if not _is_library_of(library, system):
+            system, library = name_system(plugin), plugin.get("filename", "")
+            if not _has_system(library, system):
                 misnamed[system] = library, place(plugin)
             elif _LIBRARY.fullmatch(library):
                 systems.add(system)
@@ -119,7 +119,7 @@ def _may_start_gazebo(workspace: Workspace) -> bool:
     return False
 
 
-def _is_library_of(library: str, system: str) -> bool:
+def _has_system(library: str, system: str) -> bool:
     """Return whether a library has a system; one that is not of Gazebo may have any."""
     name = library.rpartition("/")[2]
     if not _OF_GAZEBO.match(name):

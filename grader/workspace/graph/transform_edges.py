@@ -10,7 +10,7 @@ from grader.base.source import Location
 from grader.base.text import quoted
 from grader.base.transforms import Transform
 from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
-from grader.ros.known.package_rows import DecidingParameter, package_row, transforms_of
+from grader.ros.known.package_rows import DecidingParameter, find_transforms, package_row
 from grader.ros.launch.launch_model import STATE_PUBLISHER, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.package.package import Package
@@ -23,8 +23,8 @@ from grader.ros.package.static_transforms import (
 from grader.ros.python.values import Unknown
 from grader.ros.xml.parsing import Element
 from grader.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
-from grader.workspace.graph.code_ends import frames_of
-from grader.workspace.graph.gazebo_topics import roots, system_of
+from grader.workspace.graph.code_ends import list_frames
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.workspace.model.workspace import Workspace
 
@@ -120,7 +120,7 @@ def _published_by(
         )
     else:
         yield from _edges_of_code(workspace, launch, node)
-        if transforms_of("/".join(program)):
+        if find_transforms("/".join(program)):
             given = workspace.parameters.given_to(package, node)
             for parent, child in _broadcast("/".join(program), given):
                 is_certain = publishes_as_named(node)
@@ -141,7 +141,7 @@ def _edges_of_code(workspace: Workspace, launch: int, node: StartedNode) -> Iter
     Which of its frames is in which one is not known: each is connected with the first.
     """
     first = ""
-    for name, frame in frames_of(workspace, node):
+    for name, frame in list_frames(workspace, node):
         if frame.use in _PUBLISHED:
             first = first or name or ""
             yield Edge(first, name or "", launch, "code", False, node.executable, frame.location)
@@ -210,7 +210,7 @@ def _broadcast_by_gazebo(workspace: Workspace, launch: int, bridge: StartedNode)
             frames = frames_of_system(plugin) if topic in topics else None
             if frames is not None:
                 is_certain = bridge.when is True
-                by = f"the system {system_of(plugin)} of Gazebo"
+                by = f"the system {name_system(plugin)} of Gazebo"
                 yield Edge(*frames, launch, "Gazebo", is_certain, by, place(plugin))
 
 
@@ -219,7 +219,7 @@ def frames_of_system(plugin: Element) -> tuple[str, str] | None:
 
     The result is None if it does not name both.
     """
-    frames = gazebo().system.get(system_of(plugin), NO_SYSTEM).transform
+    frames = gazebo().system.get(name_system(plugin), NO_SYSTEM).transform
     if frames is None:
         return None
     parent = (plugin.findtext(frames.parent) or "").strip()
@@ -232,7 +232,7 @@ def _broadcast(kind: str, given: NodeParameters) -> Iterator[tuple[str, str]]:
 
     The parameters of the program or controller name them.
     """
-    for row in transforms_of(kind):
+    for row in find_transforms(kind):
         parts = [row.on, row.parent, row.child, *row.if_equal]
         values = [_value(given, part) for part in parts]
         if given.unknown or None in values:

@@ -41,7 +41,7 @@ def may_be_opened(workspace: Workspace, sought: Sought) -> bool:
     is_own = is_own_type(workspace, sought.type)
     for _, node in workspace.launches.nodes:
         # A program of another package does not know an own type.
-        is_of_workspace = workspace.package_of(node) is not None
+        is_of_workspace = workspace.find_package(node) is not None
         if (is_of_workspace or not is_own) and _may_open(workspace, node, sought):
             return True
     if sought.kind == "publisher":
@@ -71,7 +71,7 @@ def is_all_read(workspace: Workspace, launch: int) -> bool:
 
 def _may_open(workspace: Workspace, node: StartedNode, sought: Sought) -> bool:
     """Return whether a node may open an end that it is not known to open."""
-    package = workspace.package_of(node)
+    package = workspace.find_package(node)
     if package is None:
         return _may_be_of_other_package(workspace, node, sought)
     facts = workspace.code.own_node(node)
@@ -102,7 +102,7 @@ def _may_publish_unread(
 
     Its texts say so.
     """
-    texts = [source.text for source in workspace.texts.sources_of(package, CPP_ENDINGS)]
+    texts = [source.text for source in workspace.texts.read_sources(package, CPP_ENDINGS)]
     last = sought.name.rpartition("/")[2]
     return not texts or any(last in text for text in texts) or _is_remapped_to(node, sought.name)
 
@@ -125,7 +125,7 @@ def _is_plain_bridge(workspace: Workspace, node: StartedNode) -> bool:
         file = given.values.get("config_file")
         if file is not None:
             path = (
-                workspace.installed.source_of(file.value) if isinstance(file.value, str) else None
+                workspace.installed.find_source(file.value) if isinstance(file.value, str) else None
             )
             if path not in workspace.installed.yaml:
                 return False

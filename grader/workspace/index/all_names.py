@@ -22,7 +22,7 @@ from grader.workspace.index.names_in_xacro import names_in_xacro
 from grader.workspace.index.written_names import (
     Role,
     WrittenName,
-    reader_of,
+    make_reader,
     span_of_name,
     written_name,
 )
@@ -79,7 +79,7 @@ class WorkspaceNames:
 
 def read_names(workspace: Workspace) -> WorkspaceNames:
     """Return the names that the files of a workspace define and use."""
-    source_of = reader_of(lambda path: workspace.tree.read(path, _MAX_TEXT))
+    source_of = make_reader(lambda path: workspace.tree.read(path, _MAX_TEXT))
     names = [*names_in_robots(workspace.urdfs)]
     names += names_in_xacro(workspace.urdfs, workspace.robots.xacro_sources)
     names += names_in_launch_files(workspace)

@@ -6,7 +6,7 @@ from functools import cached_property
 
 from grader.base.source import Location
 from grader.workspace.index.all_names import WorkspaceNames, read_names
-from grader.workspace.index.name_texts import texts_of
+from grader.workspace.index.name_texts import list_texts
 from grader.workspace.index.names_in_graph import ComputedName
 from grader.workspace.index.offered_elements import offered_elements
 from grader.workspace.index.offered_macros import parameters_of_macro
@@ -137,9 +137,9 @@ class NamePlaces:
         """Return the nodes and components that a launch file itself starts."""
         return [*started_in(self._opened.workspace, path)]
 
-    def texts_of(self, name: WrittenName) -> list[str]:
+    def list_texts(self, name: WrittenName) -> list[str]:
         """Return what else is known of a name, a fact each."""
-        return [*texts_of(self._opened.workspace, name)]
+        return [*list_texts(self._opened.workspace, name)]
 
     def defined_in(self, path: str) -> list[WrittenName]:
         """Return the names that a file defines, each place once, in its order."""

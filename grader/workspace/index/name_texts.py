@@ -11,7 +11,7 @@ _MAX_ENDS = 10
 _MAX_FIELDS = 20
 
 
-def texts_of(workspace: Workspace, name: WrittenName) -> Iterator[str]:
+def list_texts(workspace: Workspace, name: WrittenName) -> Iterator[str]:
     """Yield what is known of a topic, service, action or type of messages, a fact each."""
     if name.kind in ("topic", "service", "action"):
         rows: dict[str, None] = {}

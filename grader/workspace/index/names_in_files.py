@@ -23,7 +23,7 @@ def names_in_launch_files(workspace: Workspace) -> Iterator[WrittenName]:
         if data is None:
             continue
         source, argument_uses = argument_names(data, package.path(path))
-        for owner in workspace.launches.targets_of(package, path) or (source.path,):
+        for owner in workspace.launches.find_targets(package, path) or (source.path,):
             for argument in argument_uses:
                 role: Role = "definition" if argument.is_definition else "use"
                 span = argument.start, argument.end

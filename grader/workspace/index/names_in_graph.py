@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from grader.base.source import Location, Source, SourceOf
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.launch.node_parameters import controllers_of
+from grader.ros.launch.node_parameters import list_controllers
 from grader.ros.nodes.node_facts import NodeFacts, NodeFrame
 from grader.workspace.graph.bridge_rows import BridgeRow, bridge_rows
 from grader.workspace.graph.code_ends import End, opened_by_code
@@ -156,7 +156,7 @@ class GraphNames:
             if launch < 0 or not declared:
                 continue
             package, _ = self._workspace.launches.roots[launch]
-            name = self._workspace.code.name_of(node) or facts.name or ""
+            name = self._workspace.code.find_name(node) or facts.name or ""
             given = self._workspace.parameters.read_given(package, node, name)
             for parameter, value in given.values.items():
                 if parameter in declared:
@@ -195,10 +195,10 @@ class GraphNames:
         """Yield the nodes of own code as they are started, also where no launch file does so."""
         code, launched = self._workspace.code, set[tuple[str, str]]()
         for number, node in self._started_programs():
-            owner = self._workspace.package_of(node)
+            owner = self._workspace.find_package(node)
             if owner is not None:
                 launched.add((owner.name, node.executable))
-            for facts in code.nodes_of(node):
+            for facts in code.find_nodes(node):
                 yield node, facts, number
         for package, nodes in code.by_package.items():
             for program in nodes.programs:
@@ -265,10 +265,10 @@ class GraphNames:
 
     def _place_of_parameter(self, end: End, facts: NodeFacts) -> Location | None:
         """Return where the value of the only part of a name is written, if that is a parameter."""
-        parts, package = end.endpoint.parts, self._workspace.package_of(end.node)
+        parts, package = end.endpoint.parts, self._workspace.find_package(end.node)
         if len(parts) != 1 or parts[0].kind != "parameter" or package is None:
             return None
-        name = self._workspace.code.name_of(end.node) or facts.name or ""
+        name = self._workspace.code.find_name(end.node) or facts.name or ""
         given = self._workspace.parameters.read_given(package, end.node, name)
         if parts[0].text in given.values:
             return given.values[parts[0].text].location
@@ -292,11 +292,11 @@ class GraphNames:
         for _, node in self._workspace.launches.launched:
             yield node
             if node.executable in SPAWNERS:
-                yield from controllers_of(node) or ()
+                yield from list_controllers(node) or ()
 
     def _remapping(self, node: StartedNode, rule: Sequence[str]) -> _Names:
         if not node.node_name:
-            node = node._replace(node_name=self._workspace.code.name_of(node) or "")
+            node = node._replace(node_name=self._workspace.code.find_name(node) or "")
         before, after = node.full_name(rule[0]), node.full_name(rule[1])
         kinds = self._carriers.get(after, ["topic"])
         source = self._source_of(node.location.path)

@@ -138,7 +138,7 @@ class PackageNames:
                     yield from self._type_of_field(package, field.type, field.location)
         for imported in self._workspace.code.by_package[package.name].imports:
             yield from self._imported(imported.name, imported.location)
-        for source in self._workspace.texts.sources_of(package, CPP_ENDINGS):
+        for source in self._workspace.texts.read_sources(package, CPP_ENDINGS):
             for match in _TYPE_IN_CPP.finditer(source.text):
                 full = "/".join(match.groups())
                 yield written_name(source, match.span(3), _TYPE, full, "use")
@@ -183,7 +183,7 @@ class PackageNames:
 
     def _file(self, named: PathInFile) -> Iterator[WrittenName]:
         """Yield a file of a package, and where the file that names its path writes it."""
-        path = self._workspace.installed.source_of(named.path)
+        path = self._workspace.installed.find_source(named.path)
         source = self._source_of(named.location.path)
         if path is None or source is None:
             return
@@ -226,7 +226,7 @@ class PackageNames:
             rf"(?m)^[ \t]*+(?:class|struct)\s++(?:[A-Z_]++\s++)?(?P<name>{cls})\b[^;{{}}]*+\{{"
         )
         owners = [each for each in self._workspace.packages if each.name == package]
-        sources = [self._workspace.texts.sources_of(owner, CPP_ENDINGS) for owner in owners]
+        sources = [self._workspace.texts.read_sources(owner, CPP_ENDINGS) for owner in owners]
         for source in chain.from_iterable(sources):
             match = pattern.search(source.text)
             if match is not None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping
 
 from grader.ros.interfaces.known_interfaces import known_interfaces
-from grader.ros.known.package_rows import known_packages, programs_of
+from grader.ros.known.package_rows import find_programs, known_packages
 from grader.ros.package.package import Package
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Definition
@@ -49,7 +49,7 @@ def _packages(workspace: Workspace, _: str) -> Iterable[str]:
 
 
 def _programs(workspace: Workspace, owner: str) -> Iterable[str]:
-    programs = [*programs_of(owner)]
+    programs = [*find_programs(owner)]
     for package in _owners(workspace, owner):
         folder = f"lib/{package.name}/"
         setup = package.installation

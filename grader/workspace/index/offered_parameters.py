@@ -6,7 +6,7 @@ The nodes are own nodes, controllers and well-known nodes.
 from collections.abc import Iterator
 
 from grader.ros.known.package_rows import usual_names
-from grader.ros.known.parameter_rows import node_rows, row_for, rows_of
+from grader.ros.known.parameter_rows import find_rows, node_rows, row_for
 from grader.ros.known.parameter_texts import row_text
 from grader.ros.known.releases import Release
 from grader.ros.nodes.node_facts import NodeParameter
@@ -26,7 +26,7 @@ def parameters_below(workspace: Workspace, section: str, prefix: str) -> list[st
     names = [parameter.name or "" for parameter in _own_parameters(workspace, section)]
     node = _known_node(workspace, section)
     if node is not None:
-        names += (row.name for row in rows_of(node, _release_of(workspace)))
+        names += (row.name for row in find_rows(node, _only_release(workspace)))
     keys = {_key_behind(name, prefix) for name in names}
     return sorted(keys - {""})
 
@@ -40,7 +40,7 @@ def parameter_text(workspace: Workspace, section: str, name: str) -> str:
             return f"default: {parameter.default}\n{where}" if is_known else where
     node = _known_node(workspace, section)
     known = node_rows(node) if node is not None else None
-    row = row_for(node, name, _release_of(workspace)) if node is not None else None
+    row = row_for(node, name, _only_release(workspace)) if node is not None else None
     if known is None or row is None:
         return ""
     return f"parameter of {node}\n{row_text(row, known.read)}"
@@ -64,7 +64,7 @@ def _known_node(workspace: Workspace, section: str) -> str | None:
     return usual_names().get(section)
 
 
-def _release_of(workspace: Workspace) -> Release | None:
+def _only_release(workspace: Workspace) -> Release | None:
     """Return the release of a workspace; None where it states none or several."""
     return workspace.releases[0] if len(workspace.releases) == 1 else None
 

@@ -28,7 +28,7 @@ def started_in(workspace: Workspace, path: str) -> Iterator[StartedName]:
 def _in_order(workspace: Workspace, launch: Launch) -> Iterator[StartedName]:
     first: dict[Location, StartedName] = {}
     for node in launch.nodes:
-        name = workspace.code.name_of(node) or node.executable
+        name = workspace.code.find_name(node) or node.executable
         detail = f"{node.package}/{node.executable}"
         if node.executable in SPAWNERS:
             name = " ".join([node.executable, *(word or "..." for word in node.arguments or ())])

@@ -319,7 +319,7 @@ def call_end(source: Source, start: int) -> int:
     return len(text)
 
 
-def reader_of(read: Callable[[str], bytes | None]) -> SourceOf:
+def make_reader(read: Callable[[str], bytes | None]) -> SourceOf:
     """Return what gives the texts of files by their paths, and reads each file once."""
     known: dict[str, Source | None] = {}
 

@@ -172,7 +172,7 @@ def _rejections_of_started(
     started: set[str | None] = set()
     for _, _, launch in opened.workspace.launches.files:
         for named in launch.named("urdf"):
-            started.add(opened.workspace.installed.source_of(named.path or ""))
+            started.add(opened.workspace.installed.find_source(named.path or ""))
     paths = set[str]()
     for robot in opened.robots:
         if isinstance(robot, Read) and robot.path in started:

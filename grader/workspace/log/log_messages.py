@@ -99,10 +99,10 @@ def _joined(lines: Sequence[_LogLine]) -> Iterator[LogMessage]:
             open_lines.append(line)
             continue
         if open_lines:
-            yield _message_of(open_lines)
+            yield _make_message(open_lines)
         waiting[line.process] = [line]
     for open_lines in waiting.values():
-        yield _message_of(open_lines)
+        yield _make_message(open_lines)
 
 
 def _continues(before: Sequence[_LogLine], line: _LogLine) -> bool:
@@ -118,7 +118,7 @@ def _continues(before: Sequence[_LogLine], line: _LogLine) -> bool:
     return is_open or text.startswith((" ", *_LISTS))
 
 
-def _message_of(lines: Sequence[_LogLine]) -> LogMessage:
+def _make_message(lines: Sequence[_LogLine]) -> LogMessage:
     first = lines[0]
     words = " ".join(line.text for line in lines).split()
     is_traceback = first.text.startswith(_TRACEBACK)

@@ -90,7 +90,7 @@ def _of_package(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_Place
         return
     distro = releases[0] if len(releases) == 1 else "DISTRO"
     apt = f"sudo apt install ros-{distro}-{name.replace('_', '-')}"
-    for package, place in _uses_of(opened, name):
+    for package, place in _find_uses(opened, name):
         text = f"the package {name!r} is not installed: {apt}"
         if not package.depends_on(name):
             text += f"; package.xml of {package.name!r} does not declare it"
@@ -98,7 +98,7 @@ def _of_package(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_Place
         return
 
 
-def _uses_of(opened: OpenedWorkspace, name: str) -> Iterator[tuple[Package, Location]]:
+def _find_uses(opened: OpenedWorkspace, name: str) -> Iterator[tuple[Package, Location]]:
     """Yield the packages that start a node of a package, or whose builds look for it."""
     for package, node in opened.workspace.launches.nodes:
         if node.package == name:
@@ -209,7 +209,7 @@ def paths_of_publishers(opened: OpenedWorkspace, frame: str) -> frozenset[str]:
         places = {edge.location[:2] for edge in edges}
         for node in launch.nodes:
             if node.location[:2] in places:
-                given = [workspace.installed.source_of(one.path) for one in node.parameters or ()]
+                given = [workspace.installed.find_source(one.path) for one in node.parameters or ()]
                 paths.update(path for path in given if path is not None)
     return frozenset(paths)
 

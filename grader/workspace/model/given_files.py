@@ -9,8 +9,8 @@ from grader.ros.launch.launch_model import GivenParameters, StartedNode
 from grader.ros.launch.node_parameters import (
     FileTables,
     NodeParameters,
-    controllers_of,
-    parameters_of,
+    collect_parameters,
+    list_controllers,
     read_tables,
 )
 from grader.ros.package.installed_files import are_installs_known, meant_file, open_meant
@@ -52,7 +52,7 @@ class GivenFiles:
         """Yield the parameter files that a node is given, by their paths in the workspace."""
         for given in node.parameters or ():
             if given.path and given.is_plain:
-                path = self.installed.source_of(given.path)
+                path = self.installed.find_source(given.path)
                 path = path or _meant_source(self.folder, given.path)
                 if path:
                     yield path
@@ -68,7 +68,7 @@ class GivenFiles:
             # What a controller manager and Gazebo are given, its controllers get too.
             shared: list[GivenParameters] = []
             for node in launch.nodes:
-                if self.code.name_of(node) == MANAGER:
+                if self.code.find_name(node) == MANAGER:
                     shared += node.parameters or ()
             shared += self.robots.given_in_gazebo
             loaded = (component.node for component in launch.components)
@@ -87,19 +87,19 @@ class GivenFiles:
         for _, node in self.launches.nodes:
             for controller in _spawned_by(node):
                 given += controller.parameters or ()
-        paths = {self.installed.source_of(each.path) for each in given if each.path}
+        paths = {self.installed.find_source(each.path) for each in given if each.path}
         return frozenset(path for path in paths if path is not None)
 
     def given_to(self, package: Package, node: StartedNode) -> NodeParameters:
         """Return the parameters that a node gets, whose launch file is in a package."""
-        return self.read(package, node, self.code.name_of(node) or "")
+        return self.read(package, node, self.code.find_name(node) or "")
 
     def read(self, package: Package, node: StartedNode, name: str) -> NodeParameters:
         """Return the parameters that a node gets that is called so in its program.
 
         Raises NotDecided.
         """
-        return parameters_of(node, partial(self.open, package), name, self._read_tables)
+        return collect_parameters(node, partial(self.open, package), name, self._read_tables)
 
     def read_given(self, package: Package, node: StartedNode, name: str) -> NodeParameters:
         """Return the same, where a file that surely is nowhere gives nothing. Raises NotDecided.
@@ -107,7 +107,7 @@ class GivenFiles:
         Where misspelt names count as what is meant, so do those of files and of ros__parameters.
         """
         read = partial(self._read_tables, are_keys_meant=self.folder.reads_meant)
-        return parameters_of(node, partial(self.open_given, package), name, read)
+        return collect_parameters(node, partial(self.open_given, package), name, read)
 
     @cached_property
     def _read_tables(self) -> Callable[..., FileTables]:
@@ -166,17 +166,17 @@ def _meant_source(folder: WorkspaceFolder, path: str) -> str:
 
 def _spawned_by(node: StartedNode) -> Sequence[StartedNode]:
     """Return the controllers that a node starts, if it is a spawner whose arguments are known."""
-    return (controllers_of(node) or ()) if node.executable in SPAWNERS else ()
+    return (list_controllers(node) or ()) if node.executable in SPAWNERS else ()
 
 
 def _given_by(
     files: GivenFiles, package: Package, node: StartedNode, shared: Sequence[GivenParameters]
 ) -> Iterator[tuple[str, NodeParameters]]:
     """Yield the parameters of a node, and of the controllers that it spawns, by names."""
-    name = files.code.name_of(node)
+    name = files.code.find_name(node)
     if name == MANAGER or (name is not None and node.package != MANAGER):
         yield name, files.read_given(package, node, name)
-    own_nodes = files.code.nodes_of(node) if name is None and node.node_name == "" else ()
+    own_nodes = files.code.find_nodes(node) if name is None and node.node_name == "" else ()
     for facts in own_nodes:  # several in one program
         if facts.name:
             yield facts.name, files.read_given(package, node, facts.name)

@@ -47,7 +47,7 @@ class InstalledFiles:
             if isinstance(node, YamlNode):
                 yield (path, node)
 
-    def source_of(self, path: str) -> str | None:
+    def find_source(self, path: str) -> str | None:
         """Return the file of the workspace that is installed at a path.
 
         The path begins with the stand-in of the prefix.
@@ -64,7 +64,7 @@ class InstalledFiles:
 
         The path begins with the stand-in of the prefix.
         """
-        tree = self.yaml.get(self.source_of(path) or "")
+        tree = self.yaml.get(self.find_source(path) or "")
         return tree if isinstance(tree, YamlNode) else None
 
     @cached_property
@@ -111,7 +111,7 @@ class InstalledFiles:
         files: set[str | None] = set()
         for _, _, launch in self.launches.files:
             for passed in launch.passed:
-                files |= {self.source_of(value or "") for _, value in passed.values}
+                files |= {self.find_source(value or "") for _, value in passed.values}
         return {path for path in files if path is not None}
 
     def wildcard_places(self, node: StartedNode) -> frozenset[Location]:

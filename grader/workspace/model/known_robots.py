@@ -139,13 +139,13 @@ class Robots:
         """
         sources: list[Source] = []
         for package in self.folder.packages:
-            sources += self.texts.sources_of(package, (".xacro", ".urdf"))
+            sources += self.texts.read_sources(package, (".xacro", ".urdf"))
         names: set[str] = set()
         for source in sources:
             names |= {posixpath.basename(path) for path in INCLUDED.findall(source.text)}
         others = tuple(name for name in names if name and not name.endswith((".xacro", ".urdf")))
         for package in self.folder.packages:
-            sources += self.texts.sources_of(package, others)
+            sources += self.texts.read_sources(package, others)
         return tuple(sources)
 
     @cached_property

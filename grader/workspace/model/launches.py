@@ -7,7 +7,7 @@ from functools import cache, cached_property
 
 from grader.ros.installation.places import LaunchKind, launch_kind
 from grader.ros.launch.launch_model import Launch, StartedNode
-from grader.ros.launch.node_parameters import controllers_of
+from grader.ros.launch.node_parameters import list_controllers
 from grader.ros.package.package import Package
 from grader.workspace.model.text_files import MAX_YAML, read_paths
 from grader.workspace.model.workspace_folder import WorkspaceFolder
@@ -83,11 +83,11 @@ class Launches:
             included |= {passed.path for passed in launch.passed}
         root_launches = []
         for package, path, launch in self.files:
-            if included.isdisjoint(self.targets_of(package, path)):
+            if included.isdisjoint(self.find_targets(package, path)):
                 root_launches.append((package, launch))
         return tuple(root_launches)
 
-    def targets_of(self, package: Package, source: str) -> Sequence[str]:
+    def find_targets(self, package: Package, source: str) -> Sequence[str]:
         """Return the paths below the prefix at which a build installs a file of a package."""
         return self._targets(package).get(source, ())
 
@@ -130,7 +130,7 @@ class Launches:
             if launch.unread:
                 return launch.unread
         for _, node in self.nodes:
-            if node.executable in SPAWNERS and controllers_of(node) is None:
+            if node.executable in SPAWNERS and list_controllers(node) is None:
                 return "the arguments of a spawner are not evaluated"
         return ""
 

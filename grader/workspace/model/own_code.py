@@ -44,10 +44,10 @@ class OwnCode:
     def _nodes_in(self, package: Package) -> PackageNodes:
         reads_meant = self.folder.reads_meant
         if self.folder.memory is None:
-            return _nodes_of(package, reads_meant=reads_meant)
+            return _read_nodes(package, reads_meant=reads_meant)
         key = ("nodes", package.name, reads_meant, _program_texts(package))
         return self.folder.memory.recall(
-            key, None, package.budget, lambda _: _nodes_of(package, reads_meant=reads_meant)
+            key, None, package.budget, lambda _: _read_nodes(package, reads_meant=reads_meant)
         )
 
     @cached_property
@@ -69,7 +69,7 @@ class OwnCode:
         Where misspelt names count as what is meant, so does that of a program. The result is None
         if it starts none that is known.
         """
-        owner = self.folder.package_of(node)
+        owner = self.folder.find_package(node)
         if owner is None or owner.name not in self.by_package:
             return None
         program = node.executable
@@ -102,7 +102,7 @@ class OwnCode:
                     nodes.setdefault((package, facts.class_name), facts)
         return nodes
 
-    def nodes_of(self, node: StartedNode) -> Sequence[NodeFacts]:
+    def find_nodes(self, node: StartedNode) -> Sequence[NodeFacts]:
         """Return the nodes that a program or a component is known to have, as far as one is read.
 
         The result is empty for what is not read.
@@ -110,15 +110,15 @@ class OwnCode:
         facts = self.own_node(node)
         if facts is not None:
             return [facts]
-        owner = self.folder.package_of(node)
+        owner = self.folder.find_package(node)
         code = self.by_package.get(owner.name) if owner is not None else None
         programs = code.programs if code is not None else ()
         named = [program.nodes for program in programs if program.name == node.executable]
         return named[0] if len(named) == 1 else ()
 
-    def all_nodes_of(self, node: StartedNode) -> Sequence[NodeFacts]:
+    def find_all_nodes(self, node: StartedNode) -> Sequence[NodeFacts]:
         """Return the same, but none of several nodes of a program that may have more."""
-        nodes = self.nodes_of(node)
+        nodes = self.find_nodes(node)
         return () if len(nodes) > 1 and self.has_other_nodes(node) else nodes
 
     def has_other_nodes(self, node: StartedNode) -> bool:
@@ -126,7 +126,7 @@ class OwnCode:
 
         Each node of a process reads its own section of the parameter files of that.
         """
-        owner = self.folder.package_of(node)
+        owner = self.folder.find_package(node)
         code = self.by_package.get(owner.name) if owner is not None else None
         programs = code.programs if code is not None else ()
         return any(program.may_have_more for program in programs if program.name == node.executable)
@@ -136,7 +136,7 @@ class OwnCode:
         facts = self.own_node(node)
         return facts is not None and not facts.doubts
 
-    def name_of(self, node: StartedNode) -> str | None:
+    def find_name(self, node: StartedNode) -> str | None:
         """Return the name that a node has, without its namespace; None where it is not known."""
         if node.node_name is None or node.node_name:
             return node.node_name
@@ -149,7 +149,7 @@ class OwnCode:
             return facts.name
         return program_row(node.package, node.executable).name
 
-    def children_of(self, name: str) -> frozenset[str]:
+    def find_children(self, name: str) -> frozenset[str]:
         """Return the nodes that a node of another package makes in its process.
 
         They read its parameters.
@@ -185,7 +185,7 @@ def _is_beside_no_module(package: Package, path: str) -> bool:
     return bool(folder) and f"{folder}/__init__.py" not in package.tree.files
 
 
-def _nodes_of(package: Package, *, reads_meant: bool) -> PackageNodes:
+def _read_nodes(package: Package, *, reads_meant: bool) -> PackageNodes:
     nodes = read_nodes(package, reads_meant=reads_meant)
     setup = package.installation
     if setup is None or not any(target.sources for target in setup.targets):

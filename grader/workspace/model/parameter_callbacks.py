@@ -52,8 +52,8 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
     first: dict[re.Pattern[str], Location] = {}
     may_refuse = False
     for package in workspace.packages:
-        for source in workspace.texts.sources_of(package, (*_ENDINGS, *_BUILDS)):
-            code = _code_of(source)
+        for source in workspace.texts.read_sources(package, (*_ENDINGS, *_BUILDS)):
+            code = _strip_comments(source)
             may_refuse = may_refuse or _may_refuse(code)
             for pattern in (_REFUSING, _TOLD, _REFUSES, _LIMITS, _GENERATES, _READS):
                 match = pattern.search(code)
@@ -69,7 +69,7 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
     )
 
 
-def _code_of(source: Source) -> str:
+def _strip_comments(source: Source) -> str:
     """Return a text without its comments, and without the texts in code."""
     if source.path.endswith(_ENDINGS):
         return code_alone(source.text, source.path)

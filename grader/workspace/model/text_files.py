@@ -56,7 +56,7 @@ class TextFiles:
                     data = package.tree.files[path].read(MAX_YAML)
                     yield XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
 
-    def sources_of(self, package: Package, endings: tuple[str, ...]) -> Iterator[Source]:
+    def read_sources(self, package: Package, endings: tuple[str, ...]) -> Iterator[Source]:
         """Yield the texts of the files of a package with these endings, without those of tests."""
         return self._sources(package, self._paths(package, endings))
 
@@ -88,7 +88,7 @@ class TextFiles:
         for package in self.folder.packages:
             sources += self._sources(package, package.launch_files)
         for package in self.folder.packages:
-            sources += self.sources_of(package, (".launch",))
+            sources += self.read_sources(package, (".launch",))
         return tuple(source.text for source in sources)
 
     def searched_launch_texts(self) -> tuple[str, ...]:
@@ -144,7 +144,7 @@ class TextFiles:
         """The texts of the Python files."""
         sources: list[Source] = []
         for package in self.folder.packages:
-            sources += self.sources_of(package, (".py",))
+            sources += self.read_sources(package, (".py",))
         return tuple(source.text for source in sources)
 
     def has_plugin(self, name: str) -> bool:
@@ -152,7 +152,7 @@ class TextFiles:
         sources = (
             source
             for package in self.folder.packages
-            for source in self.sources_of(package, (".xml",))
+            for source in self.read_sources(package, (".xml",))
         )
         return any(f'name="{name}"' in source.text for source in sources)
 
@@ -169,7 +169,7 @@ class TextFiles:
             return False
         name = posixpath.basename(target)
         for package in self.folder.packages:
-            for source in self.sources_of(package, _PROGRAMS):
+            for source in self.read_sources(package, _PROGRAMS):
                 if name in source.text and not is_launch_file(source.path):
                     return False
         return True

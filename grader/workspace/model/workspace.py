@@ -47,9 +47,9 @@ class Workspace:
         """The packages that a build of the workspace has."""
         return self.folder.packages
 
-    def package_of(self, node: StartedNode) -> Package | None:
+    def find_package(self, node: StartedNode) -> Package | None:
         """Return the package of the workspace whose program a node is."""
-        return self.folder.package_of(node)
+        return self.folder.find_package(node)
 
     @cached_property
     def folder(self) -> WorkspaceFolder:

@@ -83,7 +83,7 @@ class WorkspaceFolder:
             return read(*of)
         return self.memory.recall((read, *of), None, self._work, lambda _: read(*of))
 
-    def package_of(self, node: StartedNode) -> Package | None:
+    def find_package(self, node: StartedNode) -> Package | None:
         """Return the package of the workspace whose program a node is."""
         if self.packages:
             return self.packages[0].find(node.package)

@@ -22,7 +22,7 @@ from grader.ros.package.made_paths import made_paths
 from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Absent, Read, Surroundings, Unreadable, read_as_ros
 from grader.ros.package.robot_readings import read_as_meant
-from grader.ros.package.robots import RobotFile, find_robots, parts_of
+from grader.ros.package.robots import RobotFile, find_robots, list_parts
 from grader.ros.python.budget import READING, Budget
 from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME, UNKNOWN_LINK
 from grader.workspace.model.known_robots import INCLUDED
@@ -100,7 +100,7 @@ def _read_robots(
 ) -> list[Read | Unreadable]:
     robot_files = _without_packed_copies(tree, find_robots(tree, max_size=max_size))
     launched = launched_paths(tree, packages, robot_files)
-    included = parts_of(robot_files) | _chosen_parts(tree, robot_files)
+    included = list_parts(robot_files) | _chosen_parts(tree, robot_files)
     whole = Budget(READING + (packages[0].work.limit if packages else 0))
     counts = Counter(file.name for file in robot_files)
     robots: list[Read | Unreadable] = []

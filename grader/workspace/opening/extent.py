@@ -75,7 +75,7 @@ def _counted_ones(*counts: tuple[int, str]) -> list[str]:
     return [counted(number, word) for number, word in counts if number]
 
 
-def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) -> Extent:
+def make_extent(workspace: Workspace, unread_robots: int, stated: StatedReleases) -> Extent:
     """Return what of a workspace was read; `unread_robots` are not even opened."""
     nodes = [node for code in workspace.code.by_package.values() for node in code.nodes]
     cpp_files = expressions = 0
@@ -124,7 +124,7 @@ def _unread_programs(workspace: Workspace) -> set[tuple[str, str]]:
     unread = set()
     for _, launch in workspace.launches.roots:
         for node in launch.nodes:
-            owner = workspace.package_of(node)
+            owner = workspace.find_package(node)
             if owner is None or workspace.code.own_node(node) is not None:
                 continue
             if owner.has_program(node.package, node.executable) is not False:

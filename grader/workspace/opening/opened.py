@@ -104,7 +104,7 @@ class OpenedWorkspace:
         source = self.urdf.reading.source if isinstance(self.urdf, Read) else None
         return getattr(source, "documents", ())
 
-    def problems_of(self, robot: Read) -> tuple[Problem, ...]:
+    def find_problems(self, robot: Read) -> tuple[Problem, ...]:
         """Return the problems of one of its robots and of its meshes."""
         from grader.ros.package.incomplete import problems_of_robot  # late: few commands list them
 
@@ -119,7 +119,7 @@ class OpenedWorkspace:
         """
         from grader.workspace.rules.one_cause import without_repetitions  # late: as above
 
-        problems = self.problems_of(robot)
+        problems = self.find_problems(robot)
         return without_repetitions(problems, of_packages, with_assumptions=with_assumptions)
 
     def driven_joints(self, robot: Read) -> list[str]:
@@ -143,7 +143,7 @@ class OpenedWorkspace:
 
         return standing_problem(robot.path, driving, with_course=with_course)
 
-    def meshes_of(self, robot: Read) -> "MeshLoader":
+    def load_meshes(self, robot: Read) -> "MeshLoader":
         """Return what loads the meshes of one of its robots, for pictures."""
         from grader.ros.package.mesh_loading import MeshLoader  # late: few robots have meshes
 
@@ -199,10 +199,10 @@ class OpenedWorkspace:
 
     def extent(self) -> "Extent":
         """Return how much of it was read."""
-        from grader.workspace.opening.extent import extent_of  # late: few commands say it
+        from grader.workspace.opening.extent import make_extent  # late: few commands say it
 
         unread = sum(isinstance(robot, Unreadable) for robot in self.robots)
-        return extent_of(self.workspace, unread, self.stated)
+        return make_extent(self.workspace, unread, self.stated)
 
     def source(self, path: str) -> Source | None:
         """Return the text of one of its files, for quoting; None if it cannot be read."""

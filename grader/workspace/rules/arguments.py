@@ -32,7 +32,7 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
         text = (package.tree.read(path, _MAX_LAUNCH) or b"").decode("utf-8", "replace")
         names = [*launch.declared]
         names += {match[1] or match[2] for match in _CONFIGURATION.finditer(text)}
-        for owner in workspace.launches.targets_of(package, path):
+        for owner in workspace.launches.find_targets(package, path):
             for name in names:
                 yield Definition("launch argument", name, start, owner)
             yield from _included_arguments(workspace, launch, owner)
@@ -90,7 +90,7 @@ def _passed_to_xacro(workspace: Workspace, launch: Launch) -> Iterator[Use]:
         path = (file.path or "").removeprefix(f"{PREFIX}/")
         if file.by == "xacro" and workspace.installed.has_file(path):
             # What includes the file declare is known where all of it was expanded.
-            source_path = workspace.installed.source_of(file.path or "")
+            source_path = workspace.installed.find_source(file.path or "")
             is_expanded = source_path in workspace.robots.files
             for name, _ in file.arguments:
                 at, said = file.location, "Command of xacro"

@@ -20,7 +20,7 @@ from grader.workspace.graph.gazebo_topics import (
     roots,
     sensor_topics,
 )
-from grader.workspace.graph.graph import graph_of
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
@@ -419,7 +419,7 @@ def bridge_files(workspace: Workspace) -> set[str]:
     """
     files = set()
     for path in _files_named(workspace):
-        source = workspace.installed.source_of(path) if isinstance(path, str) else None
+        source = workspace.installed.find_source(path) if isinstance(path, str) else None
         if source is not None:
             files.add(source)
     return files
@@ -614,7 +614,7 @@ def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]
     used = [row for row in rows if row.is_used]
     if _is_clock_bridged(workspace, rows, used):
         return
-    for node, sim_time in graph_of(workspace).given("use_sim_time"):
+    for node, sim_time in make_graph(workspace).given("use_sim_time"):
         # A launch file may give a text of which ROS makes a boolean.
         if node.when and str(sim_time.value).lower() == "true":
             message = (
@@ -640,7 +640,10 @@ def _may_include_bridge(workspace: Workspace) -> bool:
     """Return whether a launch file includes one of another package that may have a bridge."""
     for _, launch in workspace.launches.roots:
         for passed in launch.passed:
-            if not workspace.installed.source_of(passed.path) and "/ros_gz_sim/" not in passed.path:
+            if (
+                not workspace.installed.find_source(passed.path)
+                and "/ros_gz_sim/" not in passed.path
+            ):
                 return True
     return False
 

@@ -20,7 +20,7 @@ from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import Launch, PassedArguments, StartedNode
 from grader.ros.urdf.model import Joint
 from grader.workspace.graph.bridge_rows import BRIDGE, are_rows_known, bridge_rows
-from grader.workspace.graph.graph import graph_of
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.graph.running_nodes import RunningNode
 from grader.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.workspace.graph.unread_ends import may_publish_type
@@ -87,7 +87,7 @@ Node(package='turtlesim', executable='turtlesim_node', name='sim2'),
 def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the nodes that a launch file gives a name which it gives another one."""
     first: dict[tuple[int, str], RunningNode] = {}
-    for node in graph_of(workspace).nodes:
+    for node in make_graph(workspace).nodes:
         process = node.process if node.kind == "program" else None
         if process is None or not process.node_name or node.when is not True or not node.name:
             continue
@@ -245,7 +245,7 @@ def _is_mentioned(workspace: Workspace, words: Sequence[str]) -> bool:
     """Return whether a launch file, a program or a page of the workspace has one of some words."""
     texts = [*workspace.texts.searched_launch_texts()]
     for package in workspace.packages:
-        texts += [source.text for source in workspace.texts.sources_of(package, _SOURCES)]
+        texts += [source.text for source in workspace.texts.read_sources(package, _SOURCES)]
     return any(word in text for text in texts for word in words)
 
 
@@ -293,7 +293,7 @@ def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
 
 def _sim_time(workspace: Workspace) -> Iterator[Location]:
     """Yield where nodes that are started are told to use the time of a simulation."""
-    for node, value in graph_of(workspace).given(_TIME):
+    for node, value in make_graph(workspace).given(_TIME):
         if node.when is True and value.value is True:
             yield value.location
 
@@ -374,7 +374,7 @@ def _may_start_clock(workspace: Workspace, launch: Launch) -> bool:
         return True
     for passed in launch.passed:
         package = share_parts(f"{PREFIX}/{passed.path}")[0]
-        is_own = workspace.installed.source_of(passed.path) is not None
+        is_own = workspace.installed.find_source(passed.path) is not None
         if not (is_own or _is_of_gazebo(passed) or package_row(package).launches_no_clock):
             return True
     return False
@@ -382,7 +382,7 @@ def _may_start_clock(workspace: Workspace, launch: Launch) -> bool:
 
 def _may_be_clock(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether a node may publish /clock: own code, or a program whose name says so."""
-    package = workspace.package_of(node)
+    package = workspace.find_package(node)
     if package is not None:
         code = workspace.code.by_package.get(package.name)
         if code is not None and not code.doubts:
@@ -407,10 +407,10 @@ def _is_told(workspace: Workspace) -> bool:
     if any(map(_says_clock, workspace.texts.loose_texts(_LOOSE))):
         return True
     for package in workspace.packages:
-        for source in workspace.texts.sources_of(package, _PAGES):
+        for source in workspace.texts.read_sources(package, _PAGES):
             if _says_clock(source.text):
                 return True
-        for source in workspace.texts.sources_of(package, _CODE):
+        for source in workspace.texts.read_sources(package, _CODE):
             if _CLOCK.partition(".")[0] in source.text:
                 return True
     return False

@@ -12,7 +12,7 @@ from grader.base.text import quoted
 from grader.ros.installation.installation import Installation
 from grader.ros.launch.launch_model import Launch, LoadedComponent
 from grader.ros.package.package import Package
-from grader.workspace.graph.graph import graph_of
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
@@ -39,7 +39,7 @@ _OTHER_WAY = "ament_index_register_resource"
 
 def component_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield components that nothing registers, and containers that nothing starts."""
-    for package, component in graph_of(workspace).components():
+    for package, component in make_graph(workspace).components():
         yield from _unregistered(workspace, package, component)
     for _, launch in workspace.launches.roots:
         yield from _no_container(workspace, launch)
@@ -62,7 +62,7 @@ def _unregistered(
         return
     yield Compared("programs")
     registered = _registered_in(setup)
-    texts = [source.text for source in workspace.texts.sources_of(owner, _CMAKE)]
+    texts = [source.text for source in workspace.texts.read_sources(owner, _CMAKE)]
     if plugin in registered or any(plugin in text for text in texts):
         return
     workspace.charge(cost_of_guess(len(registered)))
@@ -191,7 +191,7 @@ def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | N
         return None
     for node in launch.nodes:
         is_named = node.node_name and node.namespace is not None
-        may_be = node.package == _CONTAINERS or workspace.package_of(node) is not None
+        may_be = node.package == _CONTAINERS or workspace.find_package(node) is not None
         if may_be and not is_named:
             return None
         if node.node_name:

@@ -45,7 +45,7 @@ def _defaults(
 ) -> Iterator[ParameterValue | None]:
     """Yield the defaults that a node may have, as it is started: one for each release."""
     node = given.node
-    if workspace.package_of(node) is not None:
+    if workspace.find_package(node) is not None:
         yield _own_default(workspace, node, parameter)
         return
     kind = f"{node.package}/{node.executable}"

@@ -53,15 +53,15 @@ _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 def file_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the paths at which a build of the workspace installs no file."""
-    yield from _faults_of(workspace, named_paths(workspace))
+    yield from _find_faults(workspace, named_paths(workspace))
     yield from _map_images(workspace)
     yield from _models(workspace)
     # Last: reading C++ takes work that the others need where little is left.
     for package in workspace.packages:
-        yield from _faults_of(workspace, _paths_in_cpp(workspace, package))
+        yield from _find_faults(workspace, _paths_in_cpp(workspace, package))
 
 
-def _faults_of(workspace: Workspace, every: Iterable["PathInFile"]) -> Iterator[Fact]:
+def _find_faults(workspace: Workspace, every: Iterable["PathInFile"]) -> Iterator[Fact]:
     """Yield the paths that are compared, and then what is wrong with them."""
     first_named: dict[tuple[str, Location], PathInFile] = {}
     for named in every:
@@ -70,7 +70,7 @@ def _faults_of(workspace: Workspace, every: Iterable["PathInFile"]) -> Iterator[
         if named.is_needed:
             first_named[named.path, named.location] = first._replace(is_needed=True)
     for named in first_named.values():
-        for fact in _fault_of(workspace, named):
+        for fact in _find_fault(workspace, named):
             if isinstance(fact, Mismatch) and not named.is_read:
                 yield fact._replace(is_certain=False)
             else:
@@ -100,7 +100,7 @@ def named_paths(workspace: Workspace) -> Iterator[PathInFile]:
         yield from _paths_in_launch_file(workspace, package, own_path, launch)
     for package in workspace.packages:
         left_out = _robots_left_out(workspace, package)
-        for source in workspace.texts.sources_of(package, (".xacro", ".urdf", ".yaml")):
+        for source in workspace.texts.read_sources(package, (".xacro", ".urdf", ".yaml")):
             is_read = (
                 source.path.endswith(".yaml")
                 or not workspace.robots.known
@@ -162,7 +162,7 @@ def _paths_in_launch_file(
     # From the folder of the sources, a launch file finds what is beside it.
     if own_path not in package.installed.values():
         beside = f"{PREFIX}/{package.share}{posixpath.dirname(own_path)}/"
-    for text in _texts_of(workspace, launch):
+    for text in _list_texts(workspace, launch):
         paths = _PATH.findall(text.text or "")
         uri = _URI.fullmatch(text.text or "")
         if uri is not None:
@@ -198,7 +198,7 @@ class _Text(NamedTuple):
     is_needed: bool = False  # whether a program reads the file, and never writes it
 
 
-def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
+def _list_texts(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
     """Yield the texts of a launch file that may name files."""
     for passed in launch.passed:
         is_own = any(
@@ -208,7 +208,7 @@ def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
             is_needed = bool(passed.when) and not is_own and name in names_of_read_files()
             yield _Text(value, passed.location, is_needed=is_needed)
     for node in launch.nodes:
-        yield from _texts_given(node, is_own=workspace.package_of(node) is not None)
+        yield from _texts_given(node, is_own=workspace.find_package(node) is not None)
     for reference in launch.references:
         yield _Text(reference.path, reference.location, is_needed=True)
 
@@ -229,7 +229,7 @@ def _texts_given(node: StartedNode, *, is_own: bool) -> Iterator[_Text]:
                 yield _Text(parameter.value, parameter.location, is_read, is_own, is_needed)
 
 
-def _fault_of(workspace: Workspace, named: PathInFile) -> Iterator[Fact]:
+def _find_fault(workspace: Workspace, named: PathInFile) -> Iterator[Fact]:
     """Yield that no file is installed at a path, if this is certain."""
     package, at = named.package, named.location
     name, rest = share_parts(named.path)

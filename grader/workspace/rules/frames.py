@@ -18,13 +18,13 @@ from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
 from grader.ros.xml.parsing import Element
-from grader.workspace.graph.code_ends import frames_of
+from grader.workspace.graph.code_ends import list_frames
 from grader.workspace.graph.compared_robots import (
     ComparedRobots,
     robots_for_file,
     robots_for_launch,
 )
-from grader.workspace.graph.gazebo_topics import roots, system_of
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.under_arguments import names_under_arguments
 from grader.workspace.model.workspace import Workspace
@@ -157,7 +157,7 @@ def _systems_of_gazebo(workspace: Workspace) -> set[str]:
     """Return the systems that robots, models and worlds load."""
     systems: set[str] = set()
     for root, _ in roots(workspace):
-        systems |= {system_of(plugin) for plugin in root.iter("plugin")}
+        systems |= {name_system(plugin) for plugin in root.iter("plugin")}
     return systems
 
 
@@ -205,7 +205,7 @@ def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[F
     for number, node in workspace.launches.launched:
         if _is_static(node):
             above.add(frames_named(node)[0])
-        for name, frame in frames_of(workspace, node) if node.when is not False else ():
+        for name, frame in list_frames(workspace, node) if node.when is not False else ():
             if name is not None and name.strip("/"):
                 compared = robots_for_launch(workspace, number)
                 named.append(_NamedFrame(name.removeprefix("/"), frame, node, compared))
@@ -507,7 +507,7 @@ def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[
         defaults += [link.name for link in robot.links]
     for root, place in roots(workspace):
         for plugin in root.iter("plugin"):
-            if system_of(plugin) not in gazebo().odometry_systems:
+            if name_system(plugin) not in gazebo().odometry_systems:
                 continue
             at = place(plugin)
             for element in plugin.iterchildren(*gazebo().odometry_elements):

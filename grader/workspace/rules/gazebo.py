@@ -15,7 +15,7 @@ from grader.ros.known.package_tables import create_table
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.xml.parsing import Element, XmlFile
 from grader.workspace.graph.bridge_rows import BRIDGE
-from grader.workspace.graph.gazebo_topics import roots, system_of
+from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.started_worlds import started_worlds
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch, corrections, warning
@@ -139,7 +139,7 @@ def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Ite
         return
     systems = set()
     for root, _ in roots(workspace):
-        systems |= {system_of(plugin) for plugin in root.iter("plugin")}
+        systems |= {name_system(plugin) for plugin in root.iter("plugin")}
     for sensor, at in _sensors_in_world(workspace, file):
         system = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR).system
         if system and system not in systems:

@@ -85,7 +85,7 @@ def _headers_by_name(workspace: Workspace) -> _Headers:
 def _included_by_targets(workspace: Workspace, package: Package) -> Iterator[IncludedHeader]:
     """Yield what the sources of targets include, and what the own headers that they include do."""
     assert package.installation is not None
-    sources = workspace.texts.sources_of(package, CPP_FILES)
+    sources = workspace.texts.read_sources(package, CPP_FILES)
     texts = {source.path.removeprefix(package.path("")): source for source in sources}
     by_name: dict[str, list[str]] = {}
     for path in texts:

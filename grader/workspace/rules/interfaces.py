@@ -494,7 +494,7 @@ def _fits_item(kind: FieldType, item: Value) -> bool:
     """Return whether a list of a type certainly takes an item in all releases."""
     if kind.package or kind.name in _OPEN_ITEMS:
         return True
-    return isinstance(item, _type_of(kind))  # a bool is an int for rclpy, too
+    return isinstance(item, _choose_type(kind))  # a bool is an int for rclpy, too
 
 
 def _is_refused(kind: FieldType, item: Value, releases: tuple[Release, ...]) -> bool:
@@ -529,10 +529,10 @@ def _fits(kind: FieldType, value: Value, releases: tuple[Release, ...]) -> bool:
     is_zero = type(value) is int and value == 0
     if is_zero and not is_checked:
         return kind.name not in TEXTS
-    return isinstance(value, _type_of(kind))
+    return isinstance(value, _choose_type(kind))
 
 
-def _type_of(kind: FieldType) -> type:
+def _choose_type(kind: FieldType) -> type:
     """Return the type of Python that a plain field has; object for one of several."""
     if kind.name in BOOLEANS:
         return bool

@@ -17,7 +17,7 @@ from grader.ros.known.package_tables import display_types
 from grader.ros.known.releases import RELEASES
 from grader.ros.launch.launch_model import StartedNode
 from grader.workspace.graph.code_ends import End
-from grader.workspace.graph.graph import graph_of, grouped
+from grader.workspace.graph.graph import grouped, make_graph
 from grader.workspace.graph.node_ends import KnownProgram, programs_in
 from grader.workspace.graph.opened_by_programs import ends_of_row
 from grader.workspace.graph.unread_ends import Sought, may_be_opened
@@ -51,7 +51,7 @@ def known_end_facts(workspace: Workspace) -> Iterator[Fact]:
 
     A wrong name is one that the program or display does not have.
     """
-    graph = graph_of(workspace)
+    graph = make_graph(workspace)
     published = graph.certain("publisher", "code", "controller", "bridge", "program")
     published = [end for end in published if end.type is not None]
     by_launch = grouped(published, lambda end: end.launch)

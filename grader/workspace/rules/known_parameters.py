@@ -48,14 +48,14 @@ def known_parameter_facts(workspace: Workspace) -> Iterator[Fact]:
             yield Compared("parameters")
         if workspace.robots.known:
             said |= _negative_lengths(given)
-        releases = _releases_of(workspace, given)
+        releases = _find_releases(workspace, given)
         for mismatch in wrong_values(given, releases) if releases is not None else ():
             if mismatch.location not in said or mismatch.location == given.at:
                 yield mismatch
             said.add(mismatch.location)
 
 
-def _releases_of(workspace: Workspace, given: GivenNode) -> tuple[Release, ...] | None:
+def _find_releases(workspace: Workspace, given: GivenNode) -> tuple[Release, ...] | None:
     """Return the releases that values may be for.
 
     These are the stated ones, and those that the files of the values are named after. The result
@@ -107,13 +107,13 @@ def _started(workspace: Workspace) -> Iterator[GivenNode]:
     given = []
     shared: Counter[Location] = Counter()
     for package, node in workspace.launches.nodes:
-        values = _values_of(workspace, package, node)
+        values = _find_values(workspace, package, node)
         if values is None:
             continue
         is_all, values_by_name = values
         at = node.location if is_all and node.when is True else None
         program = f"{node.package}/{node.executable}"
-        said = repr(workspace.code.name_of(node) or node.executable)
+        said = repr(workspace.code.find_name(node) or node.executable)
         given.append(GivenNode(program, said, values_by_name, at))
         shared.update({value.location for value in values_by_name.values()})
     several = {place for place, count in shared.items() if count > 1}
@@ -123,19 +123,19 @@ def _started(workspace: Workspace) -> Iterator[GivenNode]:
             yield each._replace(shared=frozenset(several))
 
 
-def _values_of(
+def _find_values(
     workspace: Workspace, package: Package, node: StartedNode
 ) -> tuple[bool, Mapping[str, ParameterValue]] | None:
     """Return the parameters of a node of another package, and whether it gets no others.
 
     The result is None for one of the workspace, and for one that is not known by its name.
     """
-    if workspace.package_of(node) is not None:
+    if workspace.find_package(node) is not None:
         return None
-    has_name = workspace.code.name_of(node) is not None and node.namespace is not None
+    has_name = workspace.code.find_name(node) is not None and node.namespace is not None
     if not has_name and any(parameter.path for parameter in node.parameters or ()):
         return None  # any section may be its own
-    given = workspace.parameters.read_given(package, node, workspace.code.name_of(node) or "")
+    given = workspace.parameters.read_given(package, node, workspace.code.find_name(node) or "")
     return not given.unknown and node.arguments == (), _without_time(given.values)
 
 
@@ -250,8 +250,8 @@ def _usual_names(workspace: Workspace) -> Mapping[str, str]:
     """Return the well-known nodes by their usual names, which no own node and no controller has."""
     usual = dict(usual_names())
     for _, node in workspace.launches.nodes:
-        if workspace.package_of(node) is not None:
-            usual.pop(workspace.code.name_of(node) or "", None)
+        if workspace.find_package(node) is not None:
+            usual.pop(workspace.code.find_name(node) or "", None)
     for controller in defined_controllers(workspace):
         usual.pop(controller.name, None)
     return usual
@@ -261,7 +261,7 @@ def _section_values(section: YamlNode, prefix: str = "") -> dict[str, ParameterV
     """Return the values below a mapping by their dotted names, with where these end."""
     values: dict[str, ParameterValue] = {}
     for value in values_in(section):
-        mapping = section.mapping_of(value.keys) if value.keys else None
+        mapping = section.find_mapping(value.keys) if value.keys else None
         is_plain = all(isinstance(item.value, str) for item in value.node.items)
         if mapping is not None and is_plain:
             given = value_in_file(value.node, is_plain=False)

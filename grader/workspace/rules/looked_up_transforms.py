@@ -6,9 +6,9 @@ from typing import NamedTuple
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.gazebo_rows import gazebo
-from grader.workspace.graph.code_ends import frames_of
-from grader.workspace.graph.gazebo_topics import roots, system_of
-from grader.workspace.graph.graph import graph_of
+from grader.workspace.graph.code_ends import list_frames
+from grader.workspace.graph.gazebo_topics import name_system, roots
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.frames import openings
 from grader.workspace.rules.names import Compared, Mismatch, warning
@@ -108,7 +108,7 @@ def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
         if node.when is not True:
             continue
         by_call: dict[Location, list[str]] = {}
-        for name, frame in frames_of(workspace, node):
+        for name, frame in list_frames(workspace, node):
             if frame.lookup is not None:
                 by_call.setdefault(frame.lookup, []).append((name or "").removeprefix("/"))
         for at, names in by_call.items():
@@ -120,13 +120,13 @@ def _published(workspace: Workspace) -> _Trees | None:
     """Return what launch files publish, whatever conditions say; None where that is not known."""
     systems = gazebo().odometry_systems
     if any(
-        system_of(plugin) in systems
+        name_system(plugin) in systems
         for root, _ in roots(workspace)
         for plugin in root.iter("plugin")
     ):
         return None
     trees = _Trees()
-    for edge in graph_of(workspace).edges:
+    for edge in make_graph(workspace).edges:
         if not edge.is_known:
             return None
         trees.connect(edge.parent.removeprefix("/"), edge.child.removeprefix("/"))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from grader.ros.nodes.node_facts import EndpointKind
 from grader.workspace.graph.bridge_rows import BRIDGE, BridgeRow
 from grader.workspace.graph.code_ends import End, EndSource
-from grader.workspace.graph.graph import Graph, distinct, graph_of
+from grader.workspace.graph.graph import Graph, distinct, make_graph
 from grader.workspace.graph.node_ends import deciding_parameter
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.interfaces import is_absent
@@ -109,7 +109,7 @@ _POLICIES = (
 
 def meeting_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the ends that do not agree with another end of their name."""
-    graph = graph_of(workspace)
+    graph = make_graph(workspace)
     for meeting in (TOPICS, *SERVICES):
         every_asking = distinct(graph.of_kind(meeting.asking, sources=_ASKING))
         every_offering = distinct(graph.of_kind(meeting.offering, sources=_OFFERING))

@@ -50,23 +50,23 @@ def mesh_size_problems(workspace: Workspace) -> list[Problem]:
             loaded = urdf.loaded
             if loaded.robot is None or loaded.undetermined or loaded.verdict == "rejected":
                 continue
-            for problem in _problems_of(meshes, urdf, loaded.robot):
+            for problem in _find_problems(meshes, urdf, loaded.robot):
                 problems.setdefault((problem.message, problem.location), problem)
     return [*problems.values()]
 
 
-def _problems_of(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Problem]:
+def _find_problems(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Problem]:
     """Yield the meshes about 1000 times as large or small as what is beside them.
 
     The lengths are compared. A sample of each mesh is read first, and whole only one that may be.
     """
     reach = _longest_origin(robot)
     for link in robot.links:
-        for mesh in _meshes_of(link):
+        for mesh in _list_meshes(link):
             about = meshes.length(urdf, mesh, is_exact=False)
             if about is None or mesh.location is None:
                 continue
-            reference = _reference_of(meshes, urdf, link, about, reach)
+            reference = _find_reference(meshes, urdf, link, about, reach)
             if reference is None or not _is_off(about, reference.length, _SUSPECT, inf):
                 continue
             length = meshes.length(urdf, mesh, is_exact=True)
@@ -80,20 +80,20 @@ def _longest_origin(robot: Robot) -> float:
     return max((hypot(*origin.xyz) for origin in origins), default=0.0)
 
 
-def _reference_of(
+def _find_reference(
     meshes: "_Meshes", urdf: Read, link: Link, about: float, reach: float
 ) -> _Reference | None:
     """Return what a mesh of a link is compared with.
 
     For a huge mesh without anything beside it, this is `reach`, the longest origin of a joint.
     """
-    reference = _of_primitives(link) or meshes.reference(urdf, _meshes_of(link))
+    reference = _of_primitives(link) or meshes.reference(urdf, _list_meshes(link))
     if reference is None and about > _HUGE and reach > 0.0:
         return _Reference(reach, "the longest <origin> of a joint")
     return reference
 
 
-def _meshes_of(link: Link) -> list[Mesh]:
+def _list_meshes(link: Link) -> list[Mesh]:
     """Return the meshes of a link, each once."""
     shapes = [visual.geometry for visual in link.visuals]
     shapes += [collision.geometry for collision in link.collisions]
@@ -161,11 +161,13 @@ def _is_off(length: float, right: float, least: float, most: float) -> bool:
 
 def _of_primitives(link: Link) -> _Reference | None:
     """Return the length of the shapes of a link's collision that are no meshes."""
-    length = max((_length_of(collision.geometry) for collision in link.collisions), default=0.0)
+    length = max(
+        (_measure_length(collision.geometry) for collision in link.collisions), default=0.0
+    )
     return _Reference(length, "its collision") if length else None
 
 
-def _length_of(shape: Geometry) -> float:
+def _measure_length(shape: Geometry) -> float:
     """Return the largest dimension of a shape; 0 of a mesh."""
     match shape:
         case Box():

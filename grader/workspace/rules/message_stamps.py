@@ -10,7 +10,7 @@ from grader.base.source import Location, Source
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import STATE_PUBLISHER
 from grader.workspace.graph.code_ends import End
-from grader.workspace.graph.graph import Graph, graph_of
+from grader.workspace.graph.graph import Graph, make_graph
 from grader.workspace.model.code_text import code_alone
 from grader.workspace.model.own_code import CPP_ENDINGS
 from grader.workspace.model.workspace import Workspace
@@ -66,7 +66,7 @@ def message_stamp_facts(workspace: Workspace) -> Iterator[Fact]:
     and tf2 ignores transforms with the stamp of one that it has.
     """
     sources = _CodeSources(workspace)
-    yield from _of_messages(graph_of(workspace), sources)
+    yield from _of_messages(make_graph(workspace), sources)
     for code in workspace.code.by_package.values():
         for node in code.nodes:
             for transform in node.transforms:
@@ -127,7 +127,7 @@ class _CodeSources:
         if self._sources is None:
             by_path: dict[str, Source] = {}
             for package in self._workspace.packages:
-                for source in self._workspace.texts.sources_of(package, (".py", *CPP_ENDINGS)):
+                for source in self._workspace.texts.read_sources(package, (".py", *CPP_ENDINGS)):
                     by_path[source.path] = source
             self._sources = by_path
         code_file = self._sources.get(at.path)

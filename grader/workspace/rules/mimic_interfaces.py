@@ -33,7 +33,7 @@ def mimic_facts(workspace: Workspace) -> Iterator[Fact]:
             yield Compared("controllers")
             for joint in system.iterchildren("joint"):
                 if joint.get("name", "") in mimics:
-                    yield from _commands_of(robot, joint, is_certain=is_certain)
+                    yield from _find_commands(robot, joint, is_certain=is_certain)
 
 
 _MIMIC_COMMAND = Rule(
@@ -74,7 +74,7 @@ _MIMIC_COMMAND = Rule(
 )
 
 
-def _commands_of(robot: KnownRobot, joint: Element, *, is_certain: bool) -> Iterator[Mismatch]:
+def _find_commands(robot: KnownRobot, joint: Element, *, is_certain: bool) -> Iterator[Mismatch]:
     interface = next(joint.iterchildren("command_interface"), None)
     if interface is not None and joint.get("mimic") not in _FALSE:
         name = joint.get("name", "")

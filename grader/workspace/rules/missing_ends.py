@@ -8,7 +8,7 @@ from grader.base.source import Location
 from grader.ros.known.shared_names import shared_names
 from grader.workspace.graph.bridge_rows import BRIDGE, bridge_rows
 from grader.workspace.graph.code_ends import End
-from grader.workspace.graph.graph import Graph, graph_of, grouped
+from grader.workspace.graph.graph import Graph, grouped, make_graph
 from grader.workspace.graph.unread_ends import (
     Sought,
     is_all_read,
@@ -44,7 +44,7 @@ class _Offer(NamedTuple):
 
 def missing_end_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the ends that nothing answers, where what they surely mean waits under another name."""
-    graph = graph_of(workspace)
+    graph = make_graph(workspace)
     subscriptions, publishers = TOPICS.ends(graph)
     yield from _without_publisher(graph, subscriptions, publishers)
     yield from _without_subscription(graph, subscriptions, publishers)

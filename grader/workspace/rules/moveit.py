@@ -40,7 +40,7 @@ def moveit_facts(workspace: Workspace) -> Iterator[Fact]:
             yield among(use, compared)
         manager = tree.get(_MANAGER)
         for controller in _controllers(manager) if manager is not None else ():
-            for use in _names_of(workspace, controller):
+            for use in _list_names(workspace, controller):
                 yield among(use, compared)
             yield from _not_started(controller, left_out)
             yield from _other_joints(workspace, controller)
@@ -125,7 +125,7 @@ def _controllers(manager: YamlNode) -> Iterator[_MoveItController]:
             yield _MoveItController(node.text or "", node.location, section)
 
 
-def _names_of(workspace: Workspace, controller: _MoveItController) -> Iterator[Use]:
+def _list_names(workspace: Workspace, controller: _MoveItController) -> Iterator[Use]:
     """Yield the controller and the joints that a section names.
 
     Without definitions, the robot's driver has the controllers; another robot may have one too.

@@ -34,13 +34,13 @@ class NameFixes:
     @cached_property
     def sources(self) -> list[Source]:
         """The texts in which packages write names. Raises NotDecided."""
-        return self.sources_of(self._workspace.packages)
+        return self.read_sources(self._workspace.packages)
 
-    def sources_of(self, packages: Iterable[Package]) -> list[Source]:
+    def read_sources(self, packages: Iterable[Package]) -> list[Source]:
         """Return the texts in which some packages write names. Raises NotDecided."""
         sources: list[Source] = []
         for package in packages:
-            sources += self._workspace.texts.sources_of(package, _TEXTS)
+            sources += self._workspace.texts.read_sources(package, _TEXTS)
         return sources
 
     def of(self, mismatch: Mismatch) -> Fixes:

@@ -88,9 +88,9 @@ def _with_one_for_a_manifest(
     every = [*_without_repeated_packages([*mismatches])]
     for mismatch in every:
         if mismatch.lacked:
-            lacked.setdefault(_group_of(mismatch), []).append(mismatch)
+            lacked.setdefault(_make_group(mismatch), []).append(mismatch)
     for mismatch in every:
-        of_manifest = lacked.get(_group_of(mismatch), [])
+        of_manifest = lacked.get(_make_group(mismatch), [])
         if not mismatch.lacked:
             yield mismatch
         elif mismatch is of_manifest[0]:
@@ -117,7 +117,7 @@ def _without_repeated_packages(mismatches: Sequence[Mismatch]) -> Iterator[Misma
             yield mismatch
 
 
-def _group_of(mismatch: Mismatch) -> tuple[object, ...]:
+def _make_group(mismatch: Mismatch) -> tuple[object, ...]:
     """Return what the packages that are said together have in common."""
     return mismatch.related, mismatch.rule.name, mismatch.is_certain, mismatch.tag
 

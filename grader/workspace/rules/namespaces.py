@@ -8,7 +8,7 @@ from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import keys_of_sections
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.launch.node_parameters import is_key_of
+from grader.ros.launch.node_parameters import is_section_key
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch
 from grader.workspace.rules.rule_table import (
@@ -76,7 +76,7 @@ Node(
 def _other_namespace(
     workspace: Workspace, tree: YamlNode, node: StartedNode, keys: Mapping[str, tuple[str, ...]]
 ) -> Iterator[Compared | Mismatch]:
-    name = workspace.code.name_of(node)
+    name = workspace.code.find_name(node)
     if not name or node.namespace is None or package_row(node.package).holds_nodes:
         return
     full = node.full_name(name)
@@ -84,7 +84,7 @@ def _other_namespace(
     if not same:
         return
     yield Compared("parameters")
-    if any(is_key_of(key, full) for key in keys):
+    if any(is_section_key(key, full) for key in keys):
         return
     written = same[0].strip("/")
     message = (

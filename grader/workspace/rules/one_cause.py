@@ -31,10 +31,10 @@ def without_repetitions(
         with_assumptions: Whether all assumptions are kept.
     """
     assumed = [] if with_assumptions else _repeated_assumptions(robot_problems)
-    absent = {_line_of(problem) for problem in others if problem.rule == FILE_INSTALLED.name}
+    absent = {_find_line(problem) for problem in others if problem.rule == FILE_INSTALLED.name}
     kept = []
     for problem in robot_problems:
-        is_absent_mesh = problem.kind == MESH_PATH and _line_of(problem) in absent
+        is_absent_mesh = problem.kind == MESH_PATH and _find_line(problem) in absent
         if problem not in assumed and not is_absent_mesh:
             kept.append(problem)
     return tuple(kept)
@@ -52,15 +52,15 @@ def without_said_patterns(problems: Sequence[Problem]) -> list[Problem]:
 
 def _repeated_assumptions(problems: Sequence[Problem]) -> list[Problem]:
     """Return what is assumed of a line with another problem, or of a wrong closing tag."""
-    said = {_line_of(problem) for problem in problems if problem.kind != RECOVERED}
+    said = {_find_line(problem) for problem in problems if problem.kind != RECOVERED}
     repeated, others = list[Problem](), list[Problem]()
     for problem in problems:
         if problem.kind == RECOVERED:
-            (repeated if _line_of(problem) in said else others).append(problem)
+            (repeated if _find_line(problem) in said else others).append(problem)
     if any(problem.kind == MISMATCHED_TAG for problem in problems):
         repeated += others[:1]
     return repeated
 
 
-def _line_of(problem: Problem) -> _Line:
+def _find_line(problem: Problem) -> _Line:
     return problem.location.path, problem.location.line

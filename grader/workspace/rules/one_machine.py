@@ -85,7 +85,7 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
         launches[package.path(path)] = launch
         yield from _home_values(launch, topics)
     for package in workspace.packages:
-        for source in workspace.texts.sources_of(package, _TEXTS):
+        for source in workspace.texts.read_sources(package, _TEXTS):
             if source.path not in launches:
                 yield Compared("machine")
                 yield from _home_paths(source, (), topics)

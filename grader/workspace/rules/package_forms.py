@@ -78,7 +78,7 @@ def package_form_facts(workspace: Workspace) -> Iterator[Fact]:
                     "setup.py: write <export><build_type>ament_python</build_type></export>"
                 )
                 yield warning(_PYTHON_BUILD_TYPE, message, manifest.name_location)
-            for source in workspace.texts.sources_of(package, ("setup.cfg",)):
+            for source in workspace.texts.read_sources(package, ("setup.cfg",)):
                 yield from _dashed_keys(source)
 
 

@@ -76,7 +76,7 @@ def _refused_list(value: YamlValue) -> Iterator[Mismatch]:
             yield Mismatch(_PARAMETER_LIST, message, following.location)
             return
     entries = [entry for item in items for entry in _entries_in(item)]
-    kinds = [kind for entry in entries if (kind := _type_of(entry)) is not None]
+    kinds = [kind for entry in entries if (kind := _choose_type(entry)) is not None]
     if len(kinds) < len(entries):
         return
     for entry, kind in zip(entries, kinds, strict=True):
@@ -116,7 +116,7 @@ def _mixed(value: YamlValue, first: type[object], item: YamlNode, kind: type[obj
     return Mismatch(_PARAMETER_LIST, message, at)
 
 
-def _type_of(node: YamlNode) -> type[object] | None:
+def _choose_type(node: YamlNode) -> type[object] | None:
     """Return the type that rcl gives a value; None for one that is not compared."""
     if node.text is None or node.has_type:
         return None

@@ -15,8 +15,8 @@ from grader.base.text import enumerated, quoted
 from grader.ros.known.parameter_rows import (
     COVERED,
     ParameterRow,
+    find_rows,
     node_rows,
-    rows_of,
 )
 from grader.ros.known.releases import RELEASES, Release, other_name
 from grader.ros.launch.launch_model import ParameterValue
@@ -565,7 +565,7 @@ class _NodeReader:
     def _libraries_of_releases(self, row: ParameterRow) -> set[str]:
         """Return the libraries that a parameter may list in any release."""
         libraries: set[str] = set()
-        for other in rows_of(self._given.node):
+        for other in find_rows(self._given.node):
             if other.name == row.name:
                 libraries.update(other.libraries)
         return libraries
@@ -737,7 +737,7 @@ class _OffSwitch(NamedTuple):
 
 @cache
 def _index(node: str, release: Release) -> _RowIndex:
-    rows = {row.name: row for row in rows_of(node, release)}
+    rows = {row.name: row for row in find_rows(node, release)}
     by_name = {name: row for name, row in rows.items() if not row.places}
     patterns = [row for row in rows.values() if row.places]
     return _RowIndex(rows, by_name, patterns)

@@ -24,7 +24,7 @@ from grader.ros.config.yaml_values import (
     values_in,
 )
 from grader.ros.known.package_rows import package_row, plugin_classes, usual_names
-from grader.ros.known.parameter_rows import row_for, rows_of
+from grader.ros.known.parameter_rows import find_rows, row_for
 from grader.ros.known.releases import RELEASES, Release, releases_with
 from grader.ros.launch.launch_model import FileText, ParameterValue, StartedNode
 from grader.ros.nodes.node_facts import NodeFacts
@@ -258,7 +258,7 @@ def _meant_sections(
     node is said of that name. Without a similar name, the section may be that of a node which is
     not in the workspace.
     """
-    names = [name for name in map(workspace.code.name_of, nodes) if name is not None]
+    names = [name for name in map(workspace.code.find_name, nodes) if name is not None]
     if _has_container(nodes) or len(names) < len(nodes):
         return
     sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}
@@ -363,7 +363,7 @@ def _may_read_another(workspace: Workspace, path: str, node: StartedNode) -> boo
     """
     if path in workspace.installed.passed_files:
         return True
-    if workspace.package_of(node) is not None:
+    if workspace.find_package(node) is not None:
         return workspace.code.has_other_nodes(node)
     return "frames" not in package_row(node.package).without
 
@@ -387,7 +387,7 @@ def _unread_sections(
     """Return the keys of sections that neither the nodes of these names nor their children read."""
     children: set[str] = set()
     for name in set(names):
-        children |= workspace.code.children_of(name)
+        children |= workspace.code.find_children(name)
     unread, known_names = [], set(names)
     for key in sections:
         is_read = key in children or key in known_names
@@ -493,7 +493,7 @@ def _given(
     owner = f"{node.package}/{node.executable}"
     if _may_declare_more(workspace, node, own_node):
         yield Open("parameter", owner)
-    name_of_node = workspace.code.name_of(node)
+    name_of_node = workspace.code.find_name(node)
     if name_of_node is None and any(given.path for given in node.parameters or ()):
         yield Undecided("parameters", f"the name of {node.executable} is computed")
         return
@@ -544,7 +544,7 @@ def _parameter_uses(
 
 def _may_declare_more(workspace: Workspace, node: StartedNode, own_node: NodeFacts) -> bool:
     """Return whether a node of the workspace may declare parameters that are not read."""
-    package = workspace.package_of(node)
+    package = workspace.find_package(node)
     assert package is not None  # that has the code of the node
     nodes = workspace.code.by_package[package.name]
     return bool(own_node.doubts) or nodes.has_loose_declarations
@@ -555,7 +555,7 @@ def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Locat
 
     The node is of another program, or a controller, and gets the parameters.
     """
-    for given in workspace.parameters.owners.get(workspace.code.name_of(node) or "", ()):
+    for given in workspace.parameters.owners.get(workspace.code.find_name(node) or "", ()):
         if (given.node.package, given.node.executable) == (node.package, node.executable):
             continue
         workspace.charge(len(given.values))
@@ -568,7 +568,7 @@ def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Locat
 
 def _other_declaring(workspace: Workspace, node: StartedNode, name: str) -> str | None:
     """Return another program that is started as a node of the same name, and has a parameter."""
-    for given in workspace.parameters.owners.get(workspace.code.name_of(node) or "", ()):
+    for given in workspace.parameters.owners.get(workspace.code.find_name(node) or "", ()):
         facts = workspace.code.own_node(given.node)
         if facts is None or given.node.executable == node.executable or name not in given.values:
             continue
@@ -607,7 +607,7 @@ def _not_given(
     for parameter in own_node.parameters:
         name = parameter.name
         if parameter.is_unset and name in read and name not in values:
-            named = workspace.code.name_of(node) or node.executable
+            named = workspace.code.find_name(node) or node.executable
             message = (
                 f"the node {named!r} stops without a value of the parameter {name!r}, which it "
                 f"declares without one ({parameter.location.file_and_line})"
@@ -800,7 +800,7 @@ def _xacro_as_text(
     """Yield that a program gets the text of a xacro file, whose tags only xacro expands."""
     assert isinstance(robot.value, FileText)
     contents = robot.value.contents
-    path = workspace.installed.source_of(contents.path)
+    path = workspace.installed.find_source(contents.path)
     data = workspace.tree.read(path, URDF_LIMIT) if path is not None else None
     if contents.by == "xacro" or path is None or data is None:
         return
@@ -872,7 +872,7 @@ def generate_launch_description():
 def _only_macros(workspace: Workspace, node: StartedNode, robot: ParameterValue) -> Iterator[Fact]:
     """Yield that a program gets a robot from a file that defines macros and calls none."""
     assert isinstance(robot.value, FileText)
-    path = workspace.installed.source_of(robot.value.contents.path)
+    path = workspace.installed.find_source(robot.value.contents.path)
     data = workspace.tree.read(path, URDF_LIMIT) if path is not None else None
     if path is None or data is None or b"macro" not in data:
         return
@@ -992,7 +992,7 @@ def _is_default(key: str, names: Sequence[str]) -> bool:
     order (nav2_costmap_2d/src/costmap_2d_ros.cpp, nav2_planner/src/planner_server.cpp).
     """
     for node in dict.fromkeys(usual_names().values()):
-        for row in rows_of(node):
+        for row in find_rows(node):
             if row.name == key and row.default == names:
                 return True
     return False

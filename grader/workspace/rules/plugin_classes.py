@@ -76,7 +76,7 @@ def described_classes(workspace: Workspace) -> Iterator[_DescribedClass]:
 
 def _descriptions(workspace: Workspace, package: Package) -> Iterator[Source]:
     """Yield the files of a package that describe classes."""
-    for source in workspace.texts.sources_of(package, (".xml",)):
+    for source in workspace.texts.read_sources(package, (".xml",)):
         if _DESCRIBES in source.text and source.path != package.path(MANIFEST):
             yield source
 

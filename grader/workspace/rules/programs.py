@@ -13,7 +13,7 @@ from grader.ros.installation.installation import Installation
 from grader.ros.installation.places import is_launch_file
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.launch.node_parameters import parameters_of
+from grader.ros.launch.node_parameters import collect_parameters
 from grader.ros.package.entry_points import (
     entry_fault,
     entry_points,
@@ -367,7 +367,7 @@ def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
     if managers:
         yield from _started(workspace)
     for package, manager in managers:
-        given = parameters_of(manager, package.open_installed, "lifecycle_manager")
+        given = collect_parameters(manager, package.open_installed, "lifecycle_manager")
         workspace.charge(len(given.values))
         names = given.values.get("node_names")
         if given.unknown and names is None:
@@ -383,7 +383,7 @@ def _started(workspace: Workspace) -> Iterator[Fact]:
         if launch.more:
             yield Open("node", reason=launch.more)
     for _, node in workspace.launches.nodes:
-        name = workspace.code.name_of(node)
+        name = workspace.code.find_name(node)
         if name is not None:
             yield Definition("node", name, node.location)
         elif "lifecycle" not in package_row(node.package).without:

@@ -12,10 +12,10 @@ from grader.base.text import enumerated, quoted
 from grader.ros.installation.manifest_conditions import evaluate_condition
 from grader.ros.known.package_rows import package_row
 from grader.ros.known.released import (
+    find_releases,
     is_released,
     released_date,
     released_packages,
-    releases_of,
     rosdep_keys,
 )
 from grader.ros.known.releases import other_name
@@ -62,7 +62,7 @@ def _unknown_keys(workspace: Workspace, package: Package) -> Iterator[Fact]:
     It is a note where the name may be that of a package that is built from source.
     """
     assert package.manifest is not None
-    for source in workspace.texts.sources_of(package, (MANIFEST,)):
+    for source in workspace.texts.read_sources(package, (MANIFEST,)):
         if source.path != package.path(MANIFEST):
             continue
         for match in _DEPENDENCY.finditer(source.text):
@@ -140,7 +140,7 @@ def _of_other_release(workspace: Workspace, name: str, at: Location) -> Mismatch
         return None  # what Rolling lacks, it may have again
     if other_name("package", name, {*stated}) is not None:
         return None  # which is said of its own
-    having = enumerated([release.title() for release in releases_of(name)])
+    having = enumerated([release.title() for release in find_releases(name)])
     wanted = enumerated([release.title() for release in stated], word="or")
     message = (
         f"the package {quoted(name)} is released for {having}, and not for {wanted} "
@@ -212,7 +212,7 @@ def _named_by(workspace: Workspace, package: Package) -> Iterator[_NamedPackage]
     for source in texts.launch_sources(package):
         if source.path in launched:
             yield from (_NamedPackage(name, at) for name, at in calls_in(source))
-    for source in texts.sources_of(package, (".py", ".cpp", ".hpp")):
+    for source in texts.read_sources(package, (".py", ".cpp", ".hpp")):
         if source.path not in launched:
             for name, at in calls_in(source):
                 yield _NamedPackage(name, at, is_compared=False)

@@ -8,7 +8,7 @@ from math import hypot
 
 from grader.base.text import quoted
 from grader.base.transforms import minus, turn_between
-from grader.workspace.graph.graph import graph_of, grouped
+from grader.workspace.graph.graph import grouped, make_graph
 from grader.workspace.graph.transform_edges import Edge, is_zero_rotation
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
@@ -53,7 +53,7 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
             )
             yield Mismatch(_TRANSFORM_ROTATION, message, node.location)
     has_robots = len(workspace.robots.known) > 1  # of which one may run in Gazebo
-    certain = [edge for edge in graph_of(workspace).edges if edge.is_certain]
+    certain = [edge for edge in make_graph(workspace).edges if edge.is_certain]
     for of_launch in grouped(certain, lambda edge: edge.launch).values():
         edges: list[Edge] = []
         joints: dict[str, Edge] = {}

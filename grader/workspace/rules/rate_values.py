@@ -214,10 +214,10 @@ def _scan_sources(workspace: Workspace) -> Iterator[tuple[str, YamlNode]]:
     for _, tree in workspace.installed.trees:
         for _, section in sections_in(tree):
             for _, layer in section.pairs:
-                yield from _scans_of(layer)
+                yield from _list_scans(layer)
 
 
-def _scans_of(layer: YamlNode) -> Iterator[tuple[str, YamlNode]]:
+def _list_scans(layer: YamlNode) -> Iterator[tuple[str, YamlNode]]:
     """Yield the observation sources of a layer that are scans, with their names."""
     listed = layer.get(_SOURCES)
     for name in (listed.text or "").split() if listed is not None else ():

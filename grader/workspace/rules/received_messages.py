@@ -12,7 +12,7 @@ from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.package_tables import colour_encodings
 from grader.ros.nodes.node_facts import EndpointKind, ImageEncoding
 from grader.workspace.graph.code_ends import End
-from grader.workspace.graph.graph import graph_of, grouped
+from grader.workspace.graph.graph import grouped, make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.workspace.rules.rule_table import (
@@ -138,7 +138,7 @@ def _by_launch_and_topic(
     workspace: Workspace, kind: EndpointKind
 ) -> Mapping[tuple[int, str], Sequence[End]]:
     """Return the ends of own code that certainly are opened, by launch and topic."""
-    ends = graph_of(workspace).certain(kind, "code")
+    ends = make_graph(workspace).certain(kind, "code")
     return grouped(ends, lambda end: (end.launch, end.name))
 
 

@@ -218,7 +218,7 @@ def _uses_in_code(workspace: Workspace) -> Iterator[_Use]:
         return
     pattern = re.compile(rf"//[^\n]*|/\*.*?(?:\*/|\Z)|\b({'|'.join(names)})\b", re.DOTALL)
     for package in workspace.packages:
-        for source in workspace.texts.sources_of(package, _CPP):
+        for source in workspace.texts.read_sources(package, _CPP):
             for match in pattern.finditer(source.text):
                 if match[1] is not None:  # not of a comment
                     yield "class", match[1], source.at(match.start()), ""

@@ -7,7 +7,7 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.nodes.node_facts import EndpointKind
 from grader.workspace.graph.bridge_rows import bridge_rows
 from grader.workspace.graph.code_ends import END_SOURCES, opened_by
-from grader.workspace.graph.graph import Graph, graph_of
+from grader.workspace.graph.graph import Graph, make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Counted, Definition, Fact, Use
 
@@ -27,7 +27,7 @@ def remapping_facts(workspace: Workspace) -> Iterator[Fact]:
             read.add(key)
             rules = [rule for rule in node.remaps or () if len(owners[rule]) == 1]
             yield from _remappings(workspace, node, rules)
-    yield _count(graph_of(workspace))
+    yield _count(make_graph(workspace))
 
 
 def _owners_of_rules(workspace: Workspace) -> Mapping[tuple[str, ...], list[StartedNode]]:
@@ -112,7 +112,7 @@ def _unread_programs(workspace: Workspace) -> list[str]:
     """Return the programs of the workspace that are started and whose nodes are not known."""
     programs = set()
     for _, node in workspace.launches.launched:
-        owner = workspace.package_of(node)
+        owner = workspace.find_package(node)
         if node.when is False or owner is None or workspace.code.own_node(node) is not None:
             continue
         if owner.has_program(node.package, node.executable):

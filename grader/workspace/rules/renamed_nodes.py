@@ -11,7 +11,7 @@ from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import keys_of_sections
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.launch.node_parameters import is_key_of
+from grader.ros.launch.node_parameters import is_section_key
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, Mismatch, corrections
 from grader.workspace.rules.rule_table import (
@@ -77,7 +77,9 @@ def _unread_sections(
     for node in nodes:
         key = key_of_program_name(workspace, node, keys)
         full = node.full_name(node.node_name or "")
-        names = elsewhere if any(is_key_of(section_key, full) for section_key in keys) else read
+        names = (
+            elsewhere if any(is_section_key(section_key, full) for section_key in keys) else read
+        )
         if key is not None and None not in names and key.rpartition("/")[2] not in names:
             unread.append((node, key))
     for node, key in unread:
@@ -142,8 +144,8 @@ def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str |
     None is among them where one is not known.
     """
     names: set[str | None] = set()
-    for name in {workspace.code.name_of(node) for node in nodes}:
-        names |= {name, *workspace.code.children_of(name or "")}
+    for name in {workspace.code.find_name(node) for node in nodes}:
+        names |= {name, *workspace.code.find_children(name or "")}
     return names
 
 
@@ -159,8 +161,8 @@ def key_of_program_name(workspace: Workspace, node: StartedNode, keys: _Keys) ->
     found_key = None
     for key in keys:
         last = key.rpartition("/")[2]
-        if last == name or (last not in _ANY_NAMES and is_key_of(key, full)):
+        if last == name or (last not in _ANY_NAMES and is_section_key(key, full)):
             return None
-        if last == old and is_key_of(key, full_name):
+        if last == old and is_section_key(key, full_name):
             found_key = key
     return found_key

@@ -6,7 +6,7 @@ from grader.base.text import quoted
 from grader.ros.launch.launch_model import STATE_PUBLISHER, Launch, StartedNode
 from grader.ros.urdf.model import Joint
 from grader.workspace.graph.bridge_rows import BRIDGE, are_rows_known
-from grader.workspace.graph.graph import graph_of
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.graph.started_controllers import spawned_controllers
 from grader.workspace.graph.unread_ends import may_publish_type
 from grader.workspace.model.launches import SPAWNERS
@@ -112,12 +112,12 @@ def _may_have_states(workspace: Workspace, number: int, launch: Launch) -> bool:
             if node.package == BRIDGE or node.executable in SPAWNERS:
                 return True
     for passed in launch.passed:
-        is_own = workspace.installed.source_of(passed.path) is not None
+        is_own = workspace.installed.find_source(passed.path) is not None
         if not is_own and f"share/{_SIMULATION}/" not in f"{passed.path}/":
             return True
     if any(_may_publish(workspace, node) for node in launch.nodes):
         return True
-    ends = [end for end in graph_of(workspace).ends if end.launch == number]
+    ends = [end for end in make_graph(workspace).ends if end.launch == number]
     return any(end.kind == "publisher" and end.type in (_STATES, None) for end in ends)
 
 

@@ -7,7 +7,7 @@ from grader.base.text import enumerated
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.workspace.graph.bridge_rows import BRIDGE
-from grader.workspace.graph.graph import graph_of
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.own_code import CPP_ENDINGS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Compared, Fact, warning
@@ -57,7 +57,7 @@ def simulated_node_facts(workspace: Workspace) -> Iterator[Fact]:
     whose parameters are not all known may use it.
     """
     told: dict[Location, set[bool]] = {}
-    for node, value in graph_of(workspace).given(_TIME):
+    for node, value in make_graph(workspace).given(_TIME):
         told.setdefault(node.location, set()).add(value.value is True)
     seen: set[Location] = set()
     for _, launch in workspace.launches.roots:
@@ -97,10 +97,10 @@ def _starts_simulation(launch: Launch) -> bool:
 
 def _has_silent_code(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether the code of a node is in the workspace, and does not set its time itself."""
-    package = workspace.package_of(node)
+    package = workspace.find_package(node)
     if package is None:
         return False
-    sources = workspace.texts.sources_of(package, (".py", *CPP_ENDINGS))
+    sources = workspace.texts.read_sources(package, (".py", *CPP_ENDINGS))
     launches = {source.path for source in workspace.texts.launch_sources(package)}
     return not any(_TIME in source.text for source in sources if source.path not in launches)
 

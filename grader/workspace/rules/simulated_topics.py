@@ -10,8 +10,8 @@ from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
 from grader.workspace.graph.bridge_rows import BRIDGE, BridgeRow, bridge_rows
-from grader.workspace.graph.gazebo_topics import roots, system_of
-from grader.workspace.graph.graph import graph_of
+from grader.workspace.graph.gazebo_topics import name_system, roots
+from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.bridges import has_unread_topics
 from grader.workspace.rules.frames import openings
@@ -53,7 +53,7 @@ def _systems(workspace: Workspace) -> Mapping[str, Location]:
     for root, place in roots(workspace):
         for plugin in root.iter("plugin"):
             if not any(above.tag == "gui" for above in plugin.iterancestors()):
-                systems.setdefault(system_of(plugin), place(plugin))
+                systems.setdefault(name_system(plugin), place(plugin))
     return systems
 
 
@@ -152,7 +152,7 @@ def _odometry(workspace: Workspace, rows: Collection[BridgeRow]) -> Iterator[Mis
     if any(fact.kind == "frame" for fact in openings(workspace)):
         return
     frames = set[str]()
-    for edge in graph_of(workspace).edges:
+    for edge in make_graph(workspace).edges:
         if not edge.is_known and edge.by not in _WITHOUT_TRANSFORMS:
             return
         frames |= {edge.parent.removeprefix("/"), edge.child.removeprefix("/")}
@@ -179,7 +179,7 @@ def _parents(workspace: Workspace) -> Iterator[tuple[str, str, Location]]:
     """Yield the parents of the transforms of systems, with their systems and places."""
     for root, place in roots(workspace):
         for plugin in root.iter("plugin"):
-            frames = gazebo().system.get(system_of(plugin), NO_SYSTEM).transform
+            frames = gazebo().system.get(name_system(plugin), NO_SYSTEM).transform
             if frames is not None:
                 parent = (plugin.findtext(frames.parent) or _ODOM).strip()
-                yield parent, system_of(plugin), place(plugin)
+                yield parent, name_system(plugin), place(plugin)

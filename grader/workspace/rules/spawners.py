@@ -12,7 +12,7 @@ from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.launch.launch_model import Launch, StartedNode
-from grader.ros.launch.node_parameters import controllers_of
+from grader.ros.launch.node_parameters import list_controllers
 from grader.ros.package.package import Package
 from grader.workspace.graph.compared_robots import robots_for_launch
 from grader.workspace.graph.started_controllers import Controller, defined_controllers
@@ -172,7 +172,7 @@ def _is_defined_by_files(workspace: Workspace, words: Sequence[str | None]) -> b
     """
     files = [path for option, path in pairwise(words) if option in ("-p", "--param-file")]
     return not _is_typed(words) and all(
-        path is not None and workspace.installed.source_of(path) is not None for path in files
+        path is not None and workspace.installed.find_source(path) is not None for path in files
     )
 
 
@@ -186,7 +186,7 @@ def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact
     It surely stands for another one.
     """
     managers = {
-        workspace.code.name_of(node): node.location
+        workspace.code.find_name(node): node.location
         for _, node in workspace.launches.nodes
         if _is_manager(node)
     }
@@ -246,7 +246,7 @@ def _without_type(
     if manager is None or _OTHER_TYPES.search(launch.source.text):
         return
     files = [
-        workspace.installed.source_of(each.path) for each in manager.parameters or () if each.path
+        workspace.installed.find_source(each.path) for each in manager.parameters or () if each.path
     ]
     lacking = [controller for controller in controllers if controller.name in lacks_type]
     elsewhere = [controller for controller in lacking if controller.location.path not in files]
@@ -254,7 +254,7 @@ def _without_type(
         at = elsewhere[0].location
         text = (
             "the controller manager is not given the parameters with the type of "
-            f"{_names_of(elsewhere)} ({at.file_and_line})"
+            f"{_join_names(elsewhere)} ({at.file_and_line})"
         )
         yield Mismatch(_MANAGER_PARAMETERS, text, manager.location, at)
         return
@@ -299,7 +299,7 @@ def _spawned_without_parameters(launch: Launch) -> Iterator[StartedNode]:
     for spawner in launch.nodes:
         is_plain = spawner.parameters == () and not _is_typed(spawner.arguments or ())
         if _is_spawner(spawner) and spawner.when and is_plain:
-            yield from controllers_of(spawner) or ()
+            yield from list_controllers(spawner) or ()
 
 
 _MANAGER_SECTION = Rule(
@@ -379,7 +379,7 @@ def _no_controllers(workspace: Workspace) -> Iterator[Mismatch]:
             yield Mismatch(_MANAGER_PARAMETERS, message, manager.location)
 
 
-def _names_of(controllers: Sequence[Controller], word: str = "and") -> str:
+def _join_names(controllers: Sequence[Controller], word: str = "and") -> str:
     names = dict.fromkeys(quoted(controller.name) for controller in controllers)
     return enumerated(names, _MAX_CONTROLLERS, word)
 
@@ -436,7 +436,7 @@ def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Ite
             moving.append(controller)
     for kind in (publishing, moving):
         if kind and spawned.isdisjoint(controller.name for controller in kind):
-            text = f"no spawner starts {_names_of(kind, 'or')}"
+            text = f"no spawner starts {_join_names(kind, 'or')}"
             yield Mismatch(_CONTROLLER_STARTED, text, kind[0].location)
 
 
@@ -466,7 +466,7 @@ def _spawned(workspace: Workspace) -> set[str | None] | None:
     for _, node in workspace.launches.nodes:
         if _is_spawner(node):
             has_spawner = True
-            spawned |= {controller.node_name for controller in controllers_of(node) or ()}
+            spawned |= {controller.node_name for controller in list_controllers(node) or ()}
         elif node.package == MANAGER and not _is_manager(node):
             return None
     return spawned if has_spawner else None

@@ -74,7 +74,7 @@ def terminal_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _reads_keys(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether the file of an own node reads keys or lines."""
-    path, text = _file_of(workspace, node)
+    path, text = _find_file(workspace, node)
     if _PORT in text or (not _KEYS.search(text) and not _ALSO.search(text)):
         return False
     code = _IF_MAIN.split(code_alone(text, path), maxsplit=1)[0]
@@ -85,11 +85,11 @@ def _reads_keys(workspace: Workspace, node: StartedNode) -> bool:
     return _KEYS.search(code) is not None and _STANDARD.search(code) is not None
 
 
-def _file_of(workspace: Workspace, node: StartedNode) -> tuple[str, str]:
+def _find_file(workspace: Workspace, node: StartedNode) -> tuple[str, str]:
     """Return the path and the text of the file of an own node; empty for another one."""
-    facts, package = workspace.code.own_node(node), workspace.package_of(node)
+    facts, package = workspace.code.own_node(node), workspace.find_package(node)
     if facts is None or package is None:
         return "", ""
     path = facts.location.path
-    sources = workspace.texts.sources_of(package, (".py", *CPP_ENDINGS))
+    sources = workspace.texts.read_sources(package, (".py", *CPP_ENDINGS))
     return path, next((source.text for source in sources if source.path == path), "")

@@ -11,7 +11,7 @@ from grader.base.text import quoted
 from grader.ros.config.rviz import Display
 from grader.ros.known.package_tables import transport_types
 from grader.workspace.graph.code_ends import End
-from grader.workspace.graph.graph import Graph, graph_of
+from grader.workspace.graph.graph import Graph, make_graph
 from grader.workspace.graph.node_ends import deciding_parameter
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Fact, Mismatch, warning
@@ -26,7 +26,7 @@ _IMAGE = "sensor_msgs.msg.Image"
 
 def topic_wiring_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield topics on which messages do not arrive as they should."""
-    graph = graph_of(workspace)
+    graph = make_graph(workspace)
     publishers = graph.certain("publisher", "code")
     subscriptions = graph.certain("subscription", "code")
     yield from _two_commanders(publishers, subscriptions)

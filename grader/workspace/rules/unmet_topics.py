@@ -12,7 +12,7 @@ from grader.ros.known.package_tables import transport_types
 from grader.ros.known.shared_names import shared_names
 from grader.ros.nodes.node_facts import Endpoint
 from grader.workspace.graph.code_ends import END_SOURCES, End
-from grader.workspace.graph.graph import Graph, graph_of
+from grader.workspace.graph.graph import Graph, make_graph
 from grader.workspace.graph.unread_ends import Sought, is_all_read, may_be_opened
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.meeting_ends import TOPICS
@@ -36,7 +36,7 @@ class _Opened(NamedTuple):
 def unmet_topic_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the topics that connect nothing."""
     yield from _of_unstarted(workspace)
-    yield from _of_one_launch(graph_of(workspace))
+    yield from _of_one_launch(make_graph(workspace))
 
 
 # --- Programs that no launch file starts

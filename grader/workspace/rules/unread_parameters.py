@@ -54,7 +54,7 @@ def unread_parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     """
     for package in workspace.packages:
         texts: dict[str, str] = {}
-        for source in workspace.texts.sources_of(package, (".py",)):
+        for source in workspace.texts.read_sources(package, (".py",)):
             texts[source.path] = source.text
         declared = _declared_in(workspace.code.by_package[package.name], texts)
         if not declared or any(map(_READS_OTHERS.search, texts.values())):

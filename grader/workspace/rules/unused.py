@@ -112,7 +112,7 @@ def _is_named(path: str, words: Collection[bytes], counts: Mapping[bytes, int]) 
 def _made(workspace: Workspace) -> Iterator[MadePath]:
     """Yield the ends of the paths that texts of the workspace make of variables."""
     for package in workspace.packages:
-        for source in workspace.texts.sources_of(package, _MAKERS):
+        for source in workspace.texts.read_sources(package, _MAKERS):
             yield from workspace.folder.recall(_made_in, source.path, source.text)
 
 

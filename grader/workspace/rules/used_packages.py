@@ -119,7 +119,7 @@ def _found_by_xacro(
 
 def named_in_robots(workspace: Workspace, package: Package) -> Iterator[tuple[str, Location]]:
     """Yield the packages of paths in URDF and xacro."""
-    for source in workspace.texts.sources_of(package, (".xacro", ".urdf")):
+    for source in workspace.texts.read_sources(package, (".xacro", ".urdf")):
         for match in _FIND.finditer(source.text):
             yield match[1] or match[2], source.at(match.start())
 
@@ -151,7 +151,7 @@ def _asked_for(workspace: Workspace, package: Package) -> Iterator[tuple[str, Lo
     for source in texts.launch_sources(package):
         if source.path in launched:
             yield from calls_in(source)
-    for source in texts.sources_of(package, (".py", *CPP_FILES)):
+    for source in texts.read_sources(package, (".py", *CPP_FILES)):
         if source.path not in launched and not OF_TESTS.search(source.path):
             yield from calls_in(source)
 
@@ -212,7 +212,7 @@ def imported_modules(workspace: Workspace, package: Package) -> Iterator[_Import
     setup, installed = package.installation, {*package.installed.values()}
     python_packages = setup.packages if setup is not None else ()
     own_folders = {name.partition(".")[0] for name in python_packages}
-    for source in workspace.texts.sources_of(package, (".py",)):
+    for source in workspace.texts.read_sources(package, (".py",)):
         is_launch = is_launch_file(source.path)
         inside = source.path.removeprefix(package.path(""))
         is_part = is_launch or inside in installed or inside.partition("/")[0] in own_folders
@@ -223,7 +223,7 @@ def imported_modules(workspace: Workspace, package: Package) -> Iterator[_Import
             before = text[max(0, match.start() - _MAX_GAP) : match.start()]
             if is_nested and before.rstrip().endswith(_OPTIONAL):
                 continue
-            for name, offset in _modules_of(match):
+            for name, offset in _list_modules(match):
                 if name not in modules:
                     at = source.at(offset)
                     yield _ImportedModule(name, at, is_launch, is_part, is_nested)
@@ -234,7 +234,7 @@ def _is_code(name: str) -> bool:
     return is_released(name) and name not in _OF_SEVERAL
 
 
-def _modules_of(match: re.Match[str]) -> Iterator[tuple[str, int]]:
+def _list_modules(match: re.Match[str]) -> Iterator[tuple[str, int]]:
     """Yield the modules that a line imports, with their offsets."""
     if match[1] is not None:
         yield match[1], match.start(1)
@@ -290,7 +290,7 @@ def _included(
         return
     compiled = {path for target in setup.targets for path in target.sources}
     folders = _folders_of_headers(workspace)
-    for source in workspace.texts.sources_of(package, CPP_FILES):
+    for source in workspace.texts.read_sources(package, CPP_FILES):
         inside = source.path.removeprefix(package.path(""))
         is_header = inside.endswith(HEADERS) and not OF_TESTS.search(inside)
         if inside not in compiled and not is_header:

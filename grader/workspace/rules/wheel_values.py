@@ -23,10 +23,10 @@ from grader.ros.known.package_rows import WheelRow, controller_row
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint, Robot
 from grader.ros.urdf.numbers import finite_number
-from grader.ros.urdf.rolling import mean_of
+from grader.ros.urdf.rolling import mean
 from grader.ros.urdf.wheel_sizes import WheelSize, measure_wheel
 from grader.ros.xml.parsing import Element
-from grader.workspace.graph.gazebo_topics import system_of
+from grader.workspace.graph.gazebo_topics import name_system
 from grader.workspace.graph.started_controllers import (
     defined_controllers,
     parameters_of_controllers,
@@ -92,7 +92,7 @@ class _Wheels(NamedTuple):
 
     def middle_of_group(self, group: int) -> Vector:
         """Return the mean of the middles of the wheels of a group."""
-        return mean_of(wheel.middle for wheel in self.groups[group])
+        return mean(wheel.middle for wheel in self.groups[group])
 
     @property
     def all(self) -> list[WheelSize]:
@@ -157,7 +157,7 @@ def _faults_under_all(source: _Source) -> Sequence[Mismatch]:
     """Return the faults under the first robot; none where the numbers are those of another one."""
     first: Sequence[Mismatch] = ()
     for robot in source.robots:
-        faults = [*_faults_of(source, Configuration(robot.robot))]
+        faults = [*_find_faults(source, Configuration(robot.robot))]
         if robot.root.find("gazebo/plugin") is None:  # nothing else stops a joint
             faults = [fault for fault in faults if fault.rule is not _WHEEL_LIMIT]
         if not faults:
@@ -214,7 +214,7 @@ def _reader_of_yaml(section: YamlNode) -> _Parameters:
 def _plugins(workspace: Workspace) -> Iterator[_Source]:
     for robot in workspace.robots.known:
         for plugin in robot.root.iter("plugin"):
-            name = system_of(plugin)
+            name = name_system(plugin)
             rows = gazebo().system.get(name, NO_SYSTEM).wheels
             if not rows:
                 name = plugin.get("filename", "").rpartition("/")[2]
@@ -234,7 +234,7 @@ def _reader_of_plugin(robot: KnownRobot, plugin: Element) -> _Parameters:
     return read
 
 
-def _faults_of(source: _Source, robot: Configuration) -> Iterator[Mismatch]:
+def _find_faults(source: _Source, robot: Configuration) -> Iterator[Mismatch]:
     """Yield the numbers, sides and directions that are not those of a robot."""
     compared: set[str] = set()  # the joints whose sides and directions were compared
     rows = sorted(source.rows.items(), key=lambda row: row[1].number not in _SIDED)
@@ -277,7 +277,7 @@ def _measured(
     if not all(groups) or len(named) > _MAX_WHEELS:
         return None
     try:
-        base = robot.root_of(_joint(robot, named[0]).child)
+        base = robot.find_root(_joint(robot, named[0]).child)
         for frame in source.parameters(_BASE):
             if robot.robot.has_link(frame.text):
                 base = frame.text
@@ -447,7 +447,7 @@ def _toward_left(wheels: _Wheels) -> Vector:
 
 def _exchanged(wheels: _Wheels) -> list[WheelSize]:
     """Return the left wheels that are right of the middle between the wheels, and the reverse."""
-    middle = mean_of(wheel.middle for wheel in wheels.all)[1]
+    middle = mean(wheel.middle for wheel in wheels.all)[1]
     left, right = wheels.groups[:2]
     exchanged = [wheel for wheel in left if wheel.middle[1] < middle]
     return exchanged + [wheel for wheel in right if wheel.middle[1] > middle]
@@ -632,7 +632,7 @@ def _measure_half_sum(wheels: _Wheels) -> tuple[float, float, str]:
 
 def _measure_ring(wheels: _Wheels) -> tuple[float, float, str]:
     """Return the mean distance of wheels from the middle between them."""
-    middle = mean_of(wheel.middle for wheel in wheels.all)
+    middle = mean(wheel.middle for wheel in wheels.all)
     away = [minus(wheel.middle, middle) for wheel in wheels.all]
     distance = add_up(hypot(x, y) for x, y, _ in away) / len(away)
     widths = [wheel.half_width or 0.0 for wheel in wheels.all]

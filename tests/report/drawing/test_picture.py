@@ -8,8 +8,8 @@ import pytest
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
-from grader.report.drawing.graded_picture import picture_of
-from grader.report.drawing.picture import Picture, scene_of
+from grader.report.drawing.graded_picture import draw_report
+from grader.report.drawing.picture import Picture, make_scene
 from grader.ros.package import mesh_loading
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
@@ -25,7 +25,7 @@ ROOT = Path(__file__).parents[3]
 def picture(name: str, rubric: str = "lab6") -> Picture:
     """Return the picture of a sample submission."""
     loaded = load_rubric(rubric)
-    found = picture_of(
+    found = draw_report(
         grade(loaded, open_submission(str(ROOT / "submissions" / rubric / name), loaded.lab))
     )
     assert found is not None
@@ -54,7 +54,7 @@ def test_a_number_that_overflows_costs_neither_picture_nor_hints(
     assert (done.returncode, done.stderr) == (1, b"")
     assert picture in done.stdout.decode()
     loaded = load_rubric("lab6")
-    found = picture_of(grade(loaded, open_submission(str(tmp_path), loaded.lab)))
+    found = draw_report(grade(loaded, open_submission(str(tmp_path), loaded.lab)))
     assert found is not None
     point = next(callout.point for callout in found.callouts if callout.link == "left_wheel")
     assert point is not None
@@ -81,7 +81,7 @@ def changed_picture(folder: Path, name: str, old: str, new: str) -> Picture:
     assert old in text
     (folder / "my_robot.urdf").write_text(text.replace(old, new))
     loaded = load_rubric("lab6")
-    found = picture_of(grade(loaded, open_submission(str(folder), loaded.lab)))
+    found = draw_report(grade(loaded, open_submission(str(folder), loaded.lab)))
     assert found is not None
     return found
 
@@ -107,7 +107,7 @@ def test_wheel_below_a_joint_that_slides_has_an_arrow() -> None:
     <joint name="slide" type="prismatic"><parent link="hub"/><child link="wheel"/><limit effort="1" velocity="1"/></joint></robot>"""
     robot = read_urdf(text.encode(), "r.urdf").robot
     assert robot is not None
-    (wheel,) = scene_of(Configuration(robot), "base", ["wheel"]).wheels
+    (wheel,) = make_scene(Configuration(robot), "base", ["wheel"]).wheels
     assert wheel.travel == pytest.approx((1.0, 0.0, 0.0), abs=1e-4)
 
 
@@ -128,7 +128,7 @@ def test_a_mesh_is_the_box_around_it(ending: str, tmp_path: Path) -> None:
     assert isinstance(opened.urdf, Read)
     robot = opened.urdf.loaded.robot
     assert robot is not None
-    scene = scene_of(Configuration(robot), "a", meshes=opened.meshes_of(opened.urdf))
+    scene = make_scene(Configuration(robot), "a", meshes=opened.load_meshes(opened.urdf))
     (body,) = scene.bodies
     assert isinstance(body.shape, Box)
     assert body.shape.size == pytest.approx((0.1, 0.4, 0.0))
@@ -136,7 +136,7 @@ def test_a_mesh_is_the_box_around_it(ending: str, tmp_path: Path) -> None:
     assert body.rgba == ((1.0, 0.0, 0.0, 1.0) if ending == "stl" else (0.7, 0.7, 0.7, 1.0))
     assert body.mesh == robot.links[0].visuals[0].geometry
     assert scene.remarks == ("Shown as the boxes around them: the meshes of 'a'",)
-    assert scene_of(Configuration(robot), "a").bodies == ()
+    assert make_scene(Configuration(robot), "a").bodies == ()
 
 
 def test_meshes_of_a_robot_have_limits_together(
@@ -162,7 +162,7 @@ def test_meshes_of_a_robot_have_limits_together(
     assert isinstance(urdf, Read)
     robot = urdf.loaded.robot
     assert robot is not None
-    scene = scene_of(Configuration(robot), "0", meshes=opened.meshes_of(urdf))
+    scene = make_scene(Configuration(robot), "0", meshes=opened.load_meshes(urdf))
     assert [body.link for body in scene.bodies] == ["0", "1", "2"]
     assert [text.rpartition(": ")[2] for text in scene.missing[:3]] == [
         "40 triangles are read of all meshes of a robot",

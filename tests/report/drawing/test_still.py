@@ -6,7 +6,7 @@ import re
 import pytest
 
 from grader.report.drawing.picture import plain_picture
-from grader.report.drawing.still import HEIGHT, MAX_SIZE, WIDTH, Still, still_of
+from grader.report.drawing.still import HEIGHT, MAX_SIZE, WIDTH, Still, draw_still
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
 from tests.samples import SAMPLES
@@ -21,7 +21,7 @@ def still(text: str) -> Still:
     assert read is not None
     picture = plain_picture(Configuration(read), read.links[0].name)
     assert picture is not None
-    return still_of(picture.scene)
+    return draw_still(picture.scene)
 
 
 def link(name: str, geometry: str, rgba: str, xyz: str = "0 0 0") -> str:
@@ -38,7 +38,7 @@ def test_picture_of_a_robot_is_small(name: str) -> None:
     assert model is not None
     picture = plain_picture(Configuration(model), model.links[0].name)
     assert picture is not None
-    faces = still_of(picture.scene)
+    faces = draw_still(picture.scene)
     assert len(json.dumps(faces, separators=(",", ":"))) <= 2_000
     numbers = [list(map(int, re.findall(r"-?\d+", data))) for _, data in faces]
     across = [x for data in numbers for x in data[::2]]

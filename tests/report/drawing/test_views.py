@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from grader.base.transforms import Rotation, Transform, Vector, rotation_from_rpy
 from grader.report.drawing.picture import Body, Picture
-from grader.report.drawing.views import FreePlaces, Panel, from_back_to_front, hull, panels_of
+from grader.report.drawing.views import FreePlaces, Panel, from_back_to_front, hull, make_panels
 from grader.ros.urdf.model import Box
 from grader.ros.urdf.shapes import Shape
 from tests.examples import examples
@@ -30,7 +30,7 @@ DIRECTIONS = [np.array([cos(number * pi / 8.0), sin(number * pi / 8.0)]) for num
 
 
 def panels(shapes: list[Shape], poses: list[Transform]) -> tuple[Panel, ...]:
-    return panels_of(Picture(scene_with(shapes, poses), (), (), ()))
+    return make_panels(Picture(scene_with(shapes, poses), (), (), ()))
 
 
 @given(SHAPES, POSES)

@@ -56,7 +56,7 @@ def _main(arguments: list[str]) -> int:
     print(
         f"the grader ended with exit code {completed.code}\n{_printable(completed.errors)}".rstrip()
     )
-    results = _results_of(completed, settings["seconds"])
+    results = _read_results(completed, settings["seconds"])
     if results is None:
         print("its output is not a report; the results say that nothing was graded")
         return 1
@@ -92,7 +92,7 @@ def _read_start(file: IO[bytes]) -> bytes:
     return file.read(_MAX_BYTES + 1)
 
 
-def _results_of(completed: _Completed, seconds: float) -> dict[str, Any] | None:
+def _read_results(completed: _Completed, seconds: float) -> dict[str, Any] | None:
     """Return what students see; None if the grader failed."""
     if completed.code is None:
         return _nothing_graded(

@@ -8,7 +8,7 @@ from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue
 from grader.ros.cpp.declarations import CppFunction, name_in, plain
 from grader.ros.cpp.objects import class_written
 from grader.ros.cpp.syntax import CppNode
-from grader.ros.cpp.unit import CppUnit, arguments_of, called_name
+from grader.ros.cpp.unit import CppUnit, called_name, list_arguments
 from grader.ros.python.budget import Budget
 
 _MAX_SITES = 20  # of one function
@@ -27,12 +27,12 @@ class CallSites:
 
         It is the value itself, where it has none, or where its function may be called elsewhere.
         """
-        functions = {self._function_of(name) for name in _names_in(value)} - {None}
+        functions = {self._find_function(name) for name in _names_in(value)} - {None}
         if len(functions) != 1 or depth > _MAX_DEPTH:
             return [value]
         [function] = functions
         assert function is not None
-        sites = self._sites_of(function)
+        sites = self._find_sites(function)
         if not 0 < len(sites) <= _MAX_SITES:
             return [value]
         values: list[CppValue] = []
@@ -46,14 +46,14 @@ class CallSites:
     def is_of_constructor(self, value: CppValue, classes: Mapping[str, object]) -> bool:
         """Return whether a value has a parameter of the constructor of one of some classes."""
         for name in _names_in(value):
-            function = self._function_of(name)
-            owner = self._unit.owner_of(function) if function is not None else ""
+            function = self._find_function(name)
+            owner = self._unit.find_owner(function) if function is not None else ""
             is_constructor = function is not None and owner.rpartition("::")[2] == function.name
             if is_constructor and owner in classes:
                 return True
         return False
 
-    def _function_of(self, name: CppName) -> CppFunction | None:
+    def _find_function(self, name: CppName) -> CppFunction | None:
         """Return the function that has a parameter; None for another name."""
         function = self._unit.function_around(name.node)
         if function is None:
@@ -69,7 +69,7 @@ class CallSites:
             names.append(name_in(declarator) if declarator is not None else None)
         return names
 
-    def _sites_of(self, function: CppFunction) -> Sequence[CppNode]:
+    def _find_sites(self, function: CppFunction) -> Sequence[CppNode]:
         """Return where a function is called, if no other one has its name and its parameters."""
         count = len(function.parameters)
         same = self._unit.functions_by_name[function.name]
@@ -89,7 +89,7 @@ class CallSites:
                 return None
             default = function.parameters[position].child("default_value")
             argument = arguments[position] if position < len(arguments) else default
-            given[name] = self._evaluation.value_of(argument)
+            given[name] = self._evaluation.evaluate_node(argument)
         return given
 
     @cached_property
@@ -113,14 +113,14 @@ class CallSites:
         """Return the base class, or the type of the member, that an initializer makes."""
         name = initializer.children[0].text if initializer.children else ""
         function = self._unit.function_around(initializer)
-        scopes = self._unit.scopes_of(function) if function is not None else ()
+        scopes = self._unit.list_scopes(function) if function is not None else ()
         variables = self._unit.variables_named(name, scopes)
         return variables[0].type if variables else name
 
 
 def _arguments(site: CppNode) -> list[CppNode]:
     if site.kind != "declaration":
-        return arguments_of(site)
+        return list_arguments(site)
     for node in site.walk():
         if node.kind in _LISTS:
             return [child for child in node.children if child.kind != "comment"]

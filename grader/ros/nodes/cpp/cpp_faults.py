@@ -13,9 +13,9 @@ from grader.ros.cpp.objects import class_written
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import (
     CppUnit,
-    arguments_of,
     called_name,
     is_conditional,
+    list_arguments,
 )
 from grader.ros.nodes.node_facts import CodeFault
 
@@ -91,7 +91,7 @@ class _CppSearch:
     def __init__(self, unit: CppUnit, nodes: Collection[str]) -> None:
         self._unit, self._nodes = unit, nodes
         self._methods = [
-            function for function in unit.functions if unit.owner_of(function) in nodes
+            function for function in unit.functions if unit.find_owner(function) in nodes
         ]
 
     def _calls(self, function: CppFunction, *names: str) -> Iterator[CppNode]:
@@ -123,7 +123,7 @@ class _CppSearch:
             owner = function.owner
             if function.name != _ACTIVATES or function.is_conditional:
                 continue
-            scopes = self._unit.scopes_of(function)
+            scopes = self._unit.list_scopes(function)
             bases = chain.from_iterable(
                 written.bases for written in self._unit.classes.get(owner, ())
             )
@@ -132,7 +132,7 @@ class _CppSearch:
             for method in self._methods:
                 calls = self._own_calls(method, "create_publisher")
                 made = next((call for call in calls if "::" not in called_name(call)), None)
-                if made is not None and self._unit.owner_of(method) == owner:
+                if made is not None and self._unit.find_owner(method) == owner:
                     message = (
                         f"the publishers of {owner.rpartition('::')[2]} stay inactive, and send "
                         f"nothing: call LifecycleNode::{_ACTIVATES}(state)"
@@ -369,7 +369,7 @@ class _CppSearch:
             if around.kind == "lambda_expression":
                 return _is_callback_argument(around)
         for use in self._unit.uses.get(function.name, ()):
-            bound = _binding_of(use)
+            bound = _find_binding(use)
             if bound is not None:
                 return _is_callback_argument(bound)
         return False
@@ -378,7 +378,7 @@ class _CppSearch:
         """Return whether a call is a method of the future that async_send_request() returned."""
         called = call.child("function")
         owner = called.child("argument") if called is not None else None
-        if owner is None or arguments_of(call):
+        if owner is None or list_arguments(call):
             return False
         if owner.kind == "call_expression":
             return called_name(owner) == "async_send_request"
@@ -387,7 +387,7 @@ class _CppSearch:
         made = _call_declared(self._uses(owner.text, function))
         if made is None or called_name(made) != "async_send_request":
             return False
-        return len(arguments_of(made)) == 1
+        return len(list_arguments(made)) == 1
 
 
 def _may_wait(function: CppFunction, unit: CppUnit) -> bool:
@@ -432,7 +432,7 @@ def _is_plain_use(use: CppNode) -> bool:
 
 def _is_given_itself(call: CppNode) -> bool:
     """Return whether a function is given the node that the callback belongs to."""
-    given = arguments_of(call)
+    given = list_arguments(call)
     text = given[0].text if given else ""
     return "shared_from_this()" in text or "get_node_base_interface()" in text.removeprefix(
         "this->"
@@ -482,7 +482,7 @@ def _call_declared(uses: Iterable[CppNode]) -> CppNode | None:
     return None
 
 
-def _binding_of(use: CppNode) -> CppNode | None:
+def _find_binding(use: CppNode) -> CppNode | None:
     """Return the call of std::bind() that is given a pointer to a method where it is named."""
     pointed = _first_around(use, "pointer_expression")
     if pointed is None or not pointed.text.startswith("&"):

@@ -7,10 +7,10 @@ from itertools import chain
 
 from grader.base.transforms import Transform
 from grader.ros.cpp.cpp_evaluation import CppEvaluation
-from grader.ros.cpp.declarations import CppFunction, declaration_of
+from grader.ros.cpp.declarations import CppFunction, find_declaration
 from grader.ros.cpp.syntax import CppNode
-from grader.ros.cpp.unit import CppUnit, arguments_of, called_name
-from grader.ros.nodes.cpp.rclcpp_calls import name_of
+from grader.ros.cpp.unit import CppUnit, called_name, list_arguments
+from grader.ros.nodes.cpp.rclcpp_calls import read_name
 from grader.ros.nodes.node_facts import FrameUse, NodeFrame, NodeTransform
 from grader.ros.nodes.transform_poses import pose_set
 
@@ -38,7 +38,7 @@ class _Variables:
         self._local: dict[str, bool] = {}
         self._numbers: dict[str, Mapping[str, Sequence[CppNode]] | None] = {}
 
-    def type_of(self, name: CppNode) -> str:
+    def find_type(self, name: CppNode) -> str:
         """Return the type of a local variable or a member, as it is written.
 
         Empty if it is not known.
@@ -49,22 +49,22 @@ class _Variables:
 
     def is_local(self, name: CppNode) -> bool:
         """Return whether the function declares a variable."""
-        self.type_of(name)
+        self.find_type(name)
         return self._local[name.text]
 
     def _read_type(self, name: CppNode) -> str:
         self._local[name.text] = False
-        for use in self.uses_of(name.text):
-            declaration = declaration_of(use)
+        for use in self.find_uses(name.text):
+            declaration = find_declaration(use)
             if declaration is not None:
                 self._local[name.text] = True
                 kind = declaration.child("type")
                 return kind.text if kind is not None else ""
-        scopes = self._unit.scopes_of(self.function)
+        scopes = self._unit.list_scopes(self.function)
         members = self._unit.variables_named(name.text, scopes)
         return members[0].type if len(members) == 1 else ""
 
-    def uses_of(self, name: str) -> Iterator[CppNode]:
+    def find_uses(self, name: str) -> Iterator[CppNode]:
         """Yield where a name is written in the function."""
         start, end = self.function.node.start, self.function.node.end
         for use in self._unit.uses.get(name, ()):
@@ -74,7 +74,7 @@ class _Variables:
     @cached_property
     def fields(self) -> Mapping[str, Sequence[CppNode]]:
         """What fields are set to in the function, by their whole text."""
-        return _values_by_field(chain.from_iterable(map(self.uses_of, _SET)))
+        return _values_by_field(chain.from_iterable(map(self.find_uses, _SET)))
 
     def numbers(self, name: str) -> Mapping[str, Sequence[CppNode]] | None:
         """Return what is set of the transform in a local variable, by its field.
@@ -82,14 +82,14 @@ class _Variables:
         The result is None where more may be set.
         """
         if name not in self._numbers:
-            is_open = any(map(_is_given_away, self.uses_of(name)))
+            is_open = any(map(_is_given_away, self.find_uses(name)))
             self._numbers[name] = None if is_open else self._moved.get(name, {})
         return self._numbers[name]
 
     @cached_property
     def _moved(self) -> Mapping[str, Mapping[str, Sequence[CppNode]]]:
         """What fields of poses are set to in the function, by the variable and the field."""
-        values = _values_by_field(chain.from_iterable(map(self.uses_of, _MOVED)))
+        values = _values_by_field(chain.from_iterable(map(self.find_uses, _MOVED)))
         moved: dict[str, dict[str, Sequence[CppNode]]] = {}
         for field, nodes in values.items():
             name, _, rest = field.partition(".")
@@ -124,7 +124,7 @@ def frames_in(
     variables = _Variables(function, unit)
     yield from _frames_in_calls(variables, unit, evaluation)
     for name in _SET:
-        for use in variables.uses_of(name):
+        for use in variables.find_uses(name):
             yield from _set_frame(use, variables, evaluation)
 
 
@@ -136,7 +136,7 @@ def transforms_in(
     for call in unit.calls_in(function):
         if call.kind != "call_expression" or called_name(call).rpartition("::")[2] != _SENDS:
             continue
-        given = arguments_of(call)
+        given = list_arguments(call)
         is_name = len(given) == 1 and given[0].kind == "identifier"
         frames: list[NodeFrame] = []
         for kind, field in _FIELDS.items():
@@ -146,7 +146,7 @@ def transforms_in(
             else:
                 frames.append(NodeFrame(kind, None, call.location))
         broadcaster = next((each for each in call.walk() if each.kind == "identifier"), None)
-        kind_of_sender = variables.type_of(broadcaster) if broadcaster is not None else ""
+        kind_of_sender = variables.find_type(broadcaster) if broadcaster is not None else ""
         yield NodeTransform(
             frames[0],
             frames[1],
@@ -166,7 +166,7 @@ def _pose_sent(name: CppNode, variables: _Variables, evaluation: CppEvaluation) 
     def value_set(field: str) -> CppNode | None:
         return values[field][0] if len(values[field]) == 1 else None
 
-    return pose_set(values.keys(), value_set, evaluation.value_of)
+    return pose_set(values.keys(), value_set, evaluation.evaluate_node)
 
 
 def _is_given_away(use: CppNode) -> bool:
@@ -208,7 +208,7 @@ def _is_decided_by_parameter(
         condition = around.child("condition") if around.kind == "if_statement" else None
         for tested in condition.walk() if condition is not None else ():
             if tested.kind == "identifier":
-                _, parts = name_of(evaluation.value_of(tested))
+                _, parts = read_name(evaluation.evaluate_node(tested))
                 if any(part.kind == "parameter" for part in parts):
                     return True
     return False
@@ -220,7 +220,7 @@ def _frames_in_calls(
     """Yield the frames between which a function looks up transforms, and unknown published ones."""
     for call in unit.calls_in(variables.function):
         short = called_name(call).rpartition("::")[2] if call.kind == "call_expression" else ""
-        given = arguments_of(call) if short else []
+        given = list_arguments(call) if short else []
         if short in _LOOKING_UP and len(given) > 1:
             second = given[2] if len(given) >= _FULL_FORM else given[1]
             for node in (given[0], second):
@@ -245,13 +245,13 @@ def _set_frame(
 def _kind_of_use(use: CppNode, member: CppNode, variables: _Variables) -> FrameUse:
     """Return what a frame is to the message in which it is set."""
     root = next((inner for inner in member.walk() if inner.kind == "identifier"), None)
-    if root is None or not variables.type_of(root).endswith(_TRANSFORM):
+    if root is None or not variables.find_type(root).endswith(_TRANSFORM):
         return "names"
     return "publishes" if use.text == "child_frame_id" else "is above"
 
 
 def _frame(kind: FrameUse, node: CppNode, evaluation: CppEvaluation) -> NodeFrame:
-    name, parts = name_of(evaluation.value_of(node))
+    name, parts = read_name(evaluation.evaluate_node(node))
     return NodeFrame(kind, name, node.location, parts)
 
 
@@ -259,6 +259,6 @@ def _is_known_transform(given: list[CppNode], variables: _Variables) -> bool:
     """Return whether what is sent is one transform whose child frame the function itself sets."""
     if len(given) != 1 or given[0].kind != "identifier":
         return False
-    if not variables.type_of(given[0]).endswith(_TRANSFORM):
+    if not variables.find_type(given[0]).endswith(_TRANSFORM):
         return False
     return f"{given[0].text}.child_frame_id" in variables.fields

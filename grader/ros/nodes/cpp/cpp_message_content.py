@@ -13,9 +13,9 @@ from grader.base.source import Location
 from grader.ros.cpp.cpp_evaluation import CppEvaluation, is_member_of_this
 from grader.ros.cpp.cpp_values import CppName
 from grader.ros.cpp.declarations import CppFunction, declared_in, name_in, plain
-from grader.ros.cpp.objects import class_written, variable_of
+from grader.ros.cpp.objects import class_written, find_variable
 from grader.ros.cpp.syntax import CppNode
-from grader.ros.cpp.unit import CppUnit, arguments_of, called_name, is_conditional
+from grader.ros.cpp.unit import CppUnit, called_name, is_conditional, list_arguments
 from grader.ros.known.package_tables import colour_encodings
 from grader.ros.nodes.cpp.rclcpp_calls import message_type
 from grader.ros.nodes.node_facts import ImageEncoding, SynchronisedType
@@ -99,7 +99,7 @@ class CppContentReader:
         """Return the namespaces and classes around a place."""
         function = self._unit.function_around(node)
         if function is not None:
-            return self._unit.scopes_of(function)
+            return self._unit.list_scopes(function)
         kinds = ("namespace_definition", "class_specifier", "struct_specifier")
         scopes: list[str] = []
         for around in node.ancestors():
@@ -131,12 +131,12 @@ class CppContentReader:
 
     def _sent_by(self, made: CppNode) -> tuple[ImageEncoding, ...]:
         """Return the encodings of the images that a publisher sends."""
-        variable = _variable_of(made)
+        variable = _find_variable(made)
         calls = self._published(variable, made) if variable is not None else None
         sent = []
         for call in calls or ():
-            given = arguments_of(call)
-            encoding = self._encoding_of(given[0], _MAX_DEPTH) if given else None
+            given = list_arguments(call)
+            encoding = self._find_encoding(given[0], _MAX_DEPTH) if given else None
             if encoding is None:
                 return ()
             sent.append(encoding)
@@ -145,14 +145,14 @@ class CppContentReader:
     def _published(self, variable: CppNode, made: CppNode) -> Sequence[CppNode] | None:
         """Return the calls of publish() of a publisher; None where it may publish elsewhere."""
         calls: list[CppNode] = []
-        for use in self._evaluation.uses_of(variable) or ():
+        for use in self._evaluation.find_uses(variable) or ():
             of_use = _publishing_calls(_whole(use), made)
             if of_use is None:
                 return None
             calls += of_use
         return calls
 
-    def _encoding_of(self, node: CppNode, depth: int) -> ImageEncoding | None:
+    def _find_encoding(self, node: CppNode, depth: int) -> ImageEncoding | None:
         """Return the encoding of an image, a message or one of cv_bridge.
 
         The result is None where it is not known.
@@ -167,21 +167,21 @@ class CppContentReader:
     def _encoding_made(self, node: CppNode, depth: int) -> ImageEncoding | None:
         """Return the encoding of the image that a call makes; None where it is not known."""
         name = called_name(node).rpartition("::")[2] if node.kind == "call_expression" else ""
-        if name == _TO_MESSAGE and not arguments_of(node):
+        if name == _TO_MESSAGE and not list_arguments(node):
             function = node.child("function")
             owner = function.child("argument") if function is not None else None
-            return self._encoding_of(owner, depth - 1) if owner is not None else None
+            return self._find_encoding(owner, depth - 1) if owner is not None else None
         if name in _CONVERTING:
             return self._converted_to(node)
         written = node.child("type") if node.kind == "compound_literal_expression" else None
         kind = written.text if written is not None else class_written(node) or name
         if plain(kind).rpartition("::")[2] == _IMAGE:
-            return self._encoding_in(arguments_of(node), 1)
+            return self._encoding_in(list_arguments(node), 1)
         return None
 
     def _converted_to(self, call: CppNode) -> ImageEncoding | None:
         """Return the encoding to which cv_bridge converts an image."""
-        given = arguments_of(call)
+        given = list_arguments(call)
         is_tracked = called_name(call).endswith("toCvShare") and len(given) == 3
         return self._encoding_in(given, 2 if is_tracked else 1)
 
@@ -190,7 +190,7 @@ class CppContentReader:
         if position >= len(given):
             return None
         node = given[position]
-        value, text = self._evaluation.value_of(node), None
+        value, text = self._evaluation.evaluate_node(node), None
         if isinstance(value, str):
             text = value
         elif isinstance(value, CppName):
@@ -212,7 +212,7 @@ class CppContentReader:
         name = node.child("field") if node.kind == "field_expression" else node
         if name is None or _whole(name) is not node:
             return None
-        writes = self._writes_of(name)
+        writes = self._find_writes(name)
         if writes is None:
             return None
         if writes.encodings:
@@ -224,7 +224,7 @@ class CppContentReader:
             return self._encoding_in(
                 [child for child in value.children if child.kind != "comment"], 1
             )
-        return self._encoding_of(value, depth - 1)
+        return self._find_encoding(value, depth - 1)
 
     def _encoding_assigned(self, writes: _Writes, node: CppNode) -> ImageEncoding | None:
         """Return the encoding that is assigned to a variable after everything else."""
@@ -240,9 +240,9 @@ class CppContentReader:
             return self._encoding_in([value], 0)
         return None
 
-    def _writes_of(self, name: CppNode) -> _Writes | None:
+    def _find_writes(self, name: CppNode) -> _Writes | None:
         """Return what sets an image; None where something that is not known may set it."""
-        uses = self._evaluation.uses_of(name)
+        uses = self._evaluation.find_uses(name)
         if uses is None:
             return None
         values: list[CppNode] = []
@@ -281,7 +281,7 @@ class CppContentReader:
 
     def _asked_by(self, call: CppNode, function: CppFunction) -> tuple[ImageEncoding, ...]:
         """Return the encodings to which the callback of a subscription converts its image."""
-        for callback in arguments_of(call)[2:3]:
+        for callback in list_arguments(call)[2:3]:
             body, message = self._function_given(callback, function)
             inner = _only_call(body, message) if body is not None else None
             if inner is not None:
@@ -302,7 +302,7 @@ class CppContentReader:
             given = parameters.children if parameters is not None else []
             return callback.child("body"), _parameter_name(given)
         if callback.kind == "call_expression" and called_name(callback) in ("std::bind", "bind"):
-            pointed = arguments_of(callback)[0] if arguments_of(callback) else callback
+            pointed = list_arguments(callback)[0] if list_arguments(callback) else callback
             method = pointed.child("argument") if pointed.kind == "pointer_expression" else None
             if method is not None:
                 return self._method(plain(method.text), function)
@@ -310,7 +310,7 @@ class CppContentReader:
 
     def _declared_callback(self, name: CppNode) -> CppNode:
         """Return the value of the only declaration of a variable; else its name."""
-        declared = [use for use in self._evaluation.uses_of(name) or () if use is not name]
+        declared = [use for use in self._evaluation.find_uses(name) or () if use is not name]
         values = [_value_declared(use) for use in declared if use.field == "declarator"]
         if len(declared) == 1 and len(values) == 1 and values[0] is not None:
             return values[0]
@@ -319,7 +319,7 @@ class CppContentReader:
     def _method(self, name: str, function: CppFunction) -> tuple[CppNode | None, CppNode | None]:
         """Return the body and the first parameter of a method of the class of a function."""
         class_name, _, short = name.rpartition("::")
-        owner = self._unit.owner_of(function)
+        owner = self._unit.find_owner(function)
         if class_name and class_name.rpartition("::")[2] != owner.rpartition("::")[2]:
             return None, None
         methods = self._methods.get((owner, short), ()) if owner else ()
@@ -332,7 +332,7 @@ class CppContentReader:
         """The functions by their classes and names."""
         methods: dict[tuple[str, str], list[CppFunction]] = {}
         for function in self._unit.functions:
-            owner = self._unit.owner_of(function)
+            owner = self._unit.find_owner(function)
             methods.setdefault((owner, function.name), []).append(function)
         return methods
 
@@ -359,13 +359,13 @@ class CppContentReader:
         return tuple(asked)
 
 
-def _variable_of(made: CppNode) -> CppNode | None:
+def _find_variable(made: CppNode) -> CppNode | None:
     """Return the name of the variable that a publisher is made for; None without one."""
     given = made.parent
     initializer = given.parent if given is not None else None
     if initializer is not None and initializer.kind == "field_initializer":
         return initializer.children[0]
-    return variable_of(made)
+    return find_variable(made)
 
 
 def _full_name(node: CppNode) -> str:
@@ -401,7 +401,7 @@ def _wrapped(use: CppNode) -> CppNode:
 def _unwrapped(node: CppNode) -> CppNode:
     """Return an expression without `*`, parentheses and std::move()."""
     while True:
-        given = arguments_of(node) if node.kind == "call_expression" else []
+        given = list_arguments(node) if node.kind == "call_expression" else []
         if _is_same(node) and node.children:
             node = node.child("argument") or node.children[0]
         elif len(given) == 1 and called_name(node) in ("std::move", "move"):
@@ -459,7 +459,7 @@ def _only_call(body: CppNode, message: CppNode | None) -> CppNode | None:
     if message is None or len(statements) != 1 or not statements[0].children:
         return None
     call = statements[0].children[0]
-    given = arguments_of(call) if call.kind == "call_expression" else []
+    given = list_arguments(call) if call.kind == "call_expression" else []
     if not given or _unwrapped(given[0]).text != message.text:
         return None
     return call if _is_own_method(call) else None
@@ -532,7 +532,7 @@ def _is_conversion(node: CppNode, message: CppNode) -> bool:
     """Return whether a node is a call of cv_bridge that converts a message."""
     if node.kind != "call_expression":
         return False
-    given = arguments_of(node)
+    given = list_arguments(node)
     if called_name(node).rpartition("::")[2] not in _CONVERTING[:2] or not given:
         return False
     return _unwrapped(given[0]).text == message.text

@@ -41,7 +41,7 @@ def cpp_field_uses(function: CppFunction, unit: CppUnit) -> Iterator[FieldUse]:
     for node in _unconditional(function.node):
         if node.kind != "field_expression" or _is_method(node):
             continue
-        root, path = _path_of(node)
+        root, path = _split_members(node)
         field = node.child("field")
         if root is not None and field is not None and path and root.text in types:
             yield FieldUse(types[root.text], path, field.location)
@@ -73,7 +73,7 @@ def _types_in(function: CppFunction, unit: CppUnit) -> dict[str, str]:
     """
     declared = Counter[str]()
     types: dict[str, str] = {}
-    scopes = unit.scopes_of(function)
+    scopes = unit.list_scopes(function)
     for node in function.node.walk():
         if node.kind in _LOOPS:
             declarator = node.child("declarator")
@@ -84,13 +84,13 @@ def _types_in(function: CppFunction, unit: CppUnit) -> dict[str, str]:
             continue
         for name, value in declared_in(node):
             declared[name.text] += 1
-            type_found = _type_of(node, value, unit, scopes)
+            type_found = _read_type(node, value, unit, scopes)
             if type_found is not None:
                 types[name.text] = type_found
     return {name: type_name for name, type_name in types.items() if declared[name] == 1}
 
 
-def _type_of(
+def _read_type(
     declaration: CppNode, value: CppNode | None, unit: CppUnit, scopes: tuple[str, ...]
 ) -> str | None:
     """Return the type that a declaration gives its variables; None for any other type."""
@@ -129,7 +129,7 @@ def _type_made(value: CppNode | None) -> str:
     return plain_name(function) if is_name and function is not None and not types else ""
 
 
-def _path_of(node: CppNode) -> tuple[CppNode | None, tuple[str, ...]]:
+def _split_members(node: CppNode) -> tuple[CppNode | None, tuple[str, ...]]:
     """Return the variable that a chain of members begins with, and the names of the fields.
 
     There is no variable where something else is in between.

@@ -22,12 +22,12 @@ from grader.ros.cpp.declarations import (
     name_in,
     plain,
 )
-from grader.ros.cpp.objects import class_written, self_of, taker_of, variable_of
+from grader.ros.cpp.objects import class_written, find_object, find_taker, find_variable
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import (
-    arguments_of,
     called_name,
     is_conditional,
+    list_arguments,
 )
 from grader.ros.installation.installation import Installation
 from grader.ros.known.package_tables import cpp_table
@@ -44,10 +44,10 @@ from grader.ros.nodes.cpp.rclcpp_calls import (
     DECLARES,
     INTERFACES_OF_ACTION,
     METHODS,
-    endpoint_of,
     facts_of_method,
     filter_subscription,
     message_type,
+    read_endpoint,
 )
 from grader.ros.nodes.node_facts import (
     CodeFault,
@@ -252,7 +252,7 @@ class _Target:
 
     def _given_to(self, node: CppNode) -> tuple[CppNode, ...]:
         if node.kind != "declaration":
-            return tuple(arguments_of(node))
+            return tuple(list_arguments(node))
         for _, value in declared_in(node):
             return tuple(value.children) if value is not None else ()
         return ()
@@ -260,7 +260,7 @@ class _Target:
     def _class_named(self, written: str, node: CppNode) -> str | None:
         """Return the full name of the class of nodes that a name means; None for another class."""
         function = self._unit.function_around(node)
-        scopes = self._unit.scopes_of(function) if function is not None else ()
+        scopes = self._unit.list_scopes(function) if function is not None else ()
         for meaning in self._unit.meanings(plain(written), scopes):
             if meaning in self._node_classes or meaning in cpp_table().nodes:
                 return meaning
@@ -279,8 +279,8 @@ class _Target:
         is_member = called is not None and called.kind == "field_expression"
         owner = called.child("argument") if called is not None and is_member else None
         if owner is not None and owner.kind != "this":
-            return self._holders.node_of(owner, function)
-        name = self._unit.owner_of(function)
+            return self._holders.find_node(owner, function)
+        name = self._unit.find_owner(function)
         if name in self._facts:
             return name
         is_other = self._holders.has_other_base(name)
@@ -298,7 +298,7 @@ class _Target:
         function, key = self._unit.function_around(created.node), self._key_made(created.node)
         if function is None or key is None:
             return
-        variable = variable_of(created.node)
+        variable = find_variable(created.node)
         is_held = self._give(created.node, function, key)
         if variable is None or is_held:
             return
@@ -310,7 +310,7 @@ class _Target:
         for use in uses:
             where = self._unit.function_around(use)
             if where is not None:
-                self._give(self_of(use, _SAME), where, key)
+                self._give(find_object(use, _SAME), where, key)
 
     def _give(self, node: CppNode, function: CppFunction, key: NodeKey) -> bool:
         """Note what is given a node by an expression; return whether something holds it then.
@@ -326,7 +326,7 @@ class _Target:
             self._flows.setdefault(key, {})[holder] = None
             self._pending.append(holder)
             return True
-        taker = taker_of(node)
+        taker = find_taker(node)
         if taker is not None and not _is_harmless(taker):
             doubt = Doubt(f"{taker} is given the node", node.location)
             self._facts.setdefault(key, []).append(doubt)
@@ -341,10 +341,10 @@ class _Target:
             if holder in followed:
                 continue
             followed.add(holder)
-            for use in self._holders.uses_of(holder):
+            for use in self._holders.find_uses(holder):
                 function = self._unit.function_around(use)
                 if function is not None:
-                    self._give(self_of(use, _SAME), function, holder)
+                    self._give(find_object(use, _SAME), function, holder)
         for name, node_class in self._node_classes.items():
             for base in node_class.bases:
                 for meaning in self._unit.meanings(base, name.split("::")[:-1]):
@@ -373,7 +373,7 @@ class _Target:
         keys_by_class: dict[str, list[Holder]] = {}
         for key in [key for key in self._facts if key not in known]:
             assert isinstance(key, Holder)
-            owner = self._class_of(key)
+            owner = self._find_class(key)
             if self._holders.has_other_base(owner):
                 keys_by_class.setdefault(owner, []).append(key)
                 continue
@@ -381,15 +381,15 @@ class _Target:
                 self._doubt_loose(call)
         for name, keys in keys_by_class.items():
             at = self._unit.classes[name][0].node.location
-            stranger = self._facts_of(keys, name, None, at)
+            stranger = self._collect_facts(keys, name, None, at)
             yield stranger._replace(doubts=(Doubt(_OF_ANOTHER, at), *stranger.doubts))
 
-    def _class_of(self, holder: Holder) -> str:
+    def _find_class(self, holder: Holder) -> str:
         """Return the class that holds a node, in a member or in one of its methods."""
         if isinstance(holder.scope, str):
             return holder.scope
         function = self._unit.function_around(holder.scope)
-        return self._unit.owner_of(function) if function is not None else ""
+        return self._unit.find_owner(function) if function is not None else ""
 
     def _doubt_loose(self, call: CppNode) -> None:
         """Doubt what all nodes of the target do, as a call may be a method of each."""
@@ -402,8 +402,8 @@ class _Target:
 
     def _read_function(self, function: CppFunction) -> None:
         """Add what the calls in a function declare and open to the facts of its node."""
-        scopes = self._unit.scopes_of(function)
-        owner = self._unit.owner_of(function)
+        scopes = self._unit.list_scopes(function)
+        owner = self._unit.find_owner(function)
         for node in self._unit.calls_in(function):
             if node.kind == "this":
                 if owner in self._facts:
@@ -458,7 +458,7 @@ class _Target:
                 return
             self._doubt_loose(call)
             return
-        value = self._evaluation.value_of(call)
+        value = self._evaluation.evaluate_node(call)
         facts = self._facts.setdefault(key, [])
         if isinstance(key, Holder):
             self._loose_calls.setdefault(key, []).append(call)
@@ -483,9 +483,9 @@ class _Target:
         called = call.child("function")
         if called is None or called.kind == "field_expression":
             return False
-        owner = self._unit.owner_of(function)
+        owner = self._unit.find_owner(function)
         return any(
-            self._unit.owner_of(candidate) in ("", owner)
+            self._unit.find_owner(candidate) in ("", owner)
             for candidate in self._unit.functions_by_name.get(name, ())
         )
 
@@ -496,8 +496,8 @@ class _Target:
         if is_timer:
             return
         doubt = Doubt(f"what {name}() opens is not evaluated", call.location)
-        arguments = arguments_of(call)
-        key = self._holders.node_of(arguments[0], function) if arguments else None
+        arguments = list_arguments(call)
+        key = self._holders.find_node(arguments[0], function) if arguments else None
         if key is None:
             self.doubts.append(doubt)
         else:
@@ -506,25 +506,25 @@ class _Target:
     def _read_action(self, call: CppNode, name: str, function: CppFunction) -> None:
         """Add the action that rclcpp_action::create_server() or create_client() opens."""
         full = name if name in ACTIONS else f"rclcpp_action::{name}"
-        value = self._evaluation.value_of(call)
+        value = self._evaluation.evaluate_node(call)
         is_of_action = name in ACTIONS or "rclcpp_action" in self._unit.opened
         if not isinstance(value, CppCall) or not is_of_action:
             self._read_plain_action(call)
             return
-        arguments = arguments_of(call)
+        arguments = list_arguments(call)
         first = arguments[0] if arguments else call
         position = 1
         if first.kind == "call_expression" and called_name(first) == _INTERFACE:
             position = INTERFACES_OF_ACTION
             key = self._receiver(first, function)
         else:
-            key = self._holders.node_of(first, function)
+            key = self._holders.find_node(first, function)
         if key is None:
             self.doubts.append(Doubt(f"the node of this {name}() is not known", call.location))
             return
-        scopes = self._unit.scopes_of(function)
+        scopes = self._unit.list_scopes(function)
         for alternative in self._alternatives(value):
-            endpoint = endpoint_of(ACTIONS[full], alternative, self._unit, scopes, position)
+            endpoint = read_endpoint(ACTIONS[full], alternative, self._unit, scopes, position)
             self._facts.setdefault(key, []).append(endpoint)
         if isinstance(key, Holder):
             self._loose_calls.setdefault(key, []).append(call)
@@ -533,7 +533,7 @@ class _Target:
         """Add a client of a service, whose function has the name of that of actions."""
         function = self._unit.function_around(call)
         if function is not None and called_name(call) in METHODS:
-            self._read_method(call, function, self._unit.scopes_of(function))
+            self._read_method(call, function, self._unit.list_scopes(function))
 
     def _subscription_of_filter(self, node: CppNode) -> Endpoint | None:
         """Return the subscription of a filter of message_filters that is given a node.
@@ -545,7 +545,7 @@ class _Target:
         function = self._unit.function_around(node)
         if given is None or taker is None or function is None:
             return None
-        scopes = self._unit.scopes_of(function)
+        scopes = self._unit.list_scopes(function)
         match = _FILTER.search(self._type_given(taker, scopes))
         arguments = [child for child in given.children if child.kind != "comment"]
         if match is None or arguments[:1] != [node]:
@@ -553,7 +553,7 @@ class _Target:
         if _SUBSCRIBER not in self._unit.meanings(match["class"], scopes):
             return None
         type_name = message_type(match["type"], self._unit, scopes)
-        values = [self._evaluation.value_of(argument) for argument in arguments]
+        values = [self._evaluation.evaluate_node(argument) for argument in arguments]
         return filter_subscription(type_name, values, taker.location)
 
     def _type_given(self, taker: CppNode, scopes: Sequence[str]) -> str:
@@ -597,9 +597,9 @@ class _Target:
             name, at = self._name_of_object(key), key.location
         given_name = name if isinstance(name, str) else None
         class_name = key if isinstance(key, str) else ""
-        return self._facts_of(self._reached_from(key), class_name, given_name, at)
+        return self._collect_facts(self._reached_from(key), class_name, given_name, at)
 
-    def _facts_of(
+    def _collect_facts(
         self, keys: Sequence[NodeKey], class_name: str, name: str | None, at: Location
     ) -> NodeFacts:
         """Return a node with the facts of all that holds it."""
@@ -644,7 +644,7 @@ class _Target:
     def _name_of_object(self, node: CppNode) -> str | None:
         """Return the name that a node of rclcpp's own class is given."""
         arguments = self._created_at[node].arguments
-        name = self._evaluation.value_of(arguments[0]) if arguments else None
+        name = self._evaluation.evaluate_node(arguments[0]) if arguments else None
         return name if isinstance(name, str) else None
 
     @cached_property
@@ -652,7 +652,7 @@ class _Target:
         """The name that each class gives its node."""
         names_of_classes: dict[str, set[_Name]] = {name: set() for name in self._node_classes}
         for function in self._unit.functions:
-            owner = self._unit.owner_of(function)
+            owner = self._unit.find_owner(function)
             if owner in names_of_classes and function.name == owner.rpartition("::")[2]:
                 names_of_classes[owner] |= set(self._names_in(function))
         return {
@@ -662,7 +662,7 @@ class _Target:
 
     def _names_in(self, constructor: CppFunction) -> Iterator[_Name]:
         """Yield the name that a constructor gives its base class, if that is rclcpp's own."""
-        scopes = self._unit.scopes_of(constructor)
+        scopes = self._unit.list_scopes(constructor)
         for initializers in constructor.node.of_kind("field_initializer_list"):
             for each in initializers.of_kind("field_initializer"):
                 written = each.children[0].text if each.children else ""
@@ -672,12 +672,12 @@ class _Target:
                     node_class.endswith(f"::{written}") for node_class in cpp_table().nodes
                 )
                 if is_base or is_short:
-                    given = arguments_of(each)
+                    given = list_arguments(each)
                     yield self._name_given(given[0], constructor) if given else None
                     self._note_namespace(given, constructor)
 
     def _name_given(self, node: CppNode, constructor: CppFunction) -> _Name:
-        value = self._evaluation.value_of(node)
+        value = self._evaluation.evaluate_node(node)
         if isinstance(value, str):
             return value
         if isinstance(value, CppName):
@@ -686,14 +686,14 @@ class _Target:
                 name = name_in(declarator) if declarator is not None else None
                 if name is not None and name.text == value.name:
                     default = parameter.child("default_value")
-                    return _Parameter(position, self._evaluation.value_of(default))
+                    return _Parameter(position, self._evaluation.evaluate_node(default))
         return None
 
     def _note_namespace(self, given: Sequence[CppNode], constructor: CppFunction) -> None:
         """Add that a node is given a namespace."""
-        second = self._evaluation.value_of(given[1]) if len(given) > 1 else None
+        second = self._evaluation.evaluate_node(given[1]) if len(given) > 1 else None
         if isinstance(second, str) and second not in ("", "/"):
-            self._facts[self._unit.owner_of(constructor)].append(
+            self._facts[self._unit.find_owner(constructor)].append(
                 Doubt("its program gives it a namespace", given[1].location)
             )
 
@@ -769,7 +769,7 @@ class _Target:
         if not written or _MESSAGE_PART.search(written):
             return False
         function = self._unit.function_around(node)
-        scopes = self._unit.scopes_of(function) if function is not None else ()
+        scopes = self._unit.list_scopes(function) if function is not None else ()
         is_known = False
         for meaning in self._unit.meanings(plain(written), scopes):
             is_known = is_known or "::" not in meaning or meaning in self._unit.classes
@@ -794,7 +794,7 @@ class _Target:
             return node
         given: CppValue = name.default
         if name.position < len(created.arguments):
-            given = self._evaluation.value_of(created.arguments[name.position])
+            given = self._evaluation.evaluate_node(created.arguments[name.position])
         return node._replace(name=given if isinstance(given, str) else None)
 
 

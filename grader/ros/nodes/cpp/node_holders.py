@@ -12,15 +12,15 @@ from typing import Literal, NamedTuple
 from grader.ros.cpp.declarations import (
     CppFunction,
     CppVariable,
-    declaration_of,
     declared_in,
+    find_declaration,
     is_argument,
     name_in,
     plain,
 )
 from grader.ros.cpp.objects import class_written, made_in
 from grader.ros.cpp.syntax import CppNode
-from grader.ros.cpp.unit import CppUnit, arguments_of, called_name, template_arguments
+from grader.ros.cpp.unit import CppUnit, called_name, list_arguments, template_arguments
 from grader.ros.known.package_tables import cpp_table
 from grader.ros.python.budget import Budget
 
@@ -139,13 +139,13 @@ class NodeHolders:
     # --- Expressions
     # ----------------------------------------------------------------------
 
-    def node_of(self, node: CppNode, function: CppFunction, depth: int = 0) -> NodeKey | None:
+    def find_node(self, node: CppNode, function: CppFunction, depth: int = 0) -> NodeKey | None:
         """Return the node that an expression in a function is; None where that is not known."""
         self._budget.charge(1)
         if depth > _MAX_DEPTH:
             return None
         if node.kind == "this":
-            owner = self._unit.owner_of(function)
+            owner = self._unit.find_owner(function)
             is_own = owner in self._classes and owner not in cpp_table().nodes
             return owner if is_own else None
         if node.kind in _NAMES:
@@ -154,7 +154,7 @@ class NodeHolders:
             return self._node_of_member(node, function)
         if node.kind in _SAME and node.children:
             inner = node.child("argument") or node.children[0]
-            return self.node_of(inner, function, depth + 1)
+            return self.find_node(inner, function, depth + 1)
         made = self._node_made(node)
         is_call = made is None and node.kind == "call_expression"
         return self._node_of_call(node, function, depth) if is_call else made
@@ -166,14 +166,14 @@ class NodeHolders:
             return None
         if declared:
             return self._node_of_local(declared[0], function, depth)
-        return self._holder_of_member(self._unit.owner_of(function), name)
+        return self._holder_of_member(self._unit.find_owner(function), name)
 
     def _declared_in(self, function: CppFunction, name: str) -> list[CppNode]:
         """Return the names in the declarations of a local variable or parameter of a function."""
         key = (function.node, name)
         if key not in self._declared:
             uses = self._uses_in(function, name)
-            self._declared[key] = [use for use in uses if declaration_of(use) is not None]
+            self._declared[key] = [use for use in uses if find_declaration(use) is not None]
         return self._declared[key]
 
     def _uses_in(self, function: CppFunction, name: str) -> list[CppNode]:
@@ -196,10 +196,12 @@ class NodeHolders:
 
     def _node_of_local(self, name: CppNode, function: CppFunction, depth: int) -> NodeKey | None:
         """Return the node of a local variable: the one that it is made with, or what holds it."""
-        declaration = declaration_of(name)
+        declaration = find_declaration(name)
         assert declaration is not None
         kind, is_parameter = declaration.child("type"), declaration.kind in _PARAMETERS
-        is_node = kind is not None and self.is_node_type(kind.text, self._unit.scopes_of(function))
+        is_node = kind is not None and self.is_node_type(
+            kind.text, self._unit.list_scopes(function)
+        )
         if is_parameter:
             is_given = function.is_template
         else:
@@ -207,7 +209,7 @@ class NodeHolders:
             if made is not None and not self._is_assigned(function, name.text):
                 return made
             value = dict(declared_in(declaration)).get(name)
-            is_given = value is not None and self.node_of(value, function, depth + 1) is not None
+            is_given = value is not None and self.find_node(value, function, depth + 1) is not None
         return Holder("local", function.node, name.text) if is_node or is_given else None
 
     def _holder_of_member(self, owner: str, name: str) -> Holder | None:
@@ -260,7 +262,7 @@ class NodeHolders:
         if owner is None or field is None:
             return None
         if owner.kind == "this":
-            return self._holder_of_member(self._unit.owner_of(function), field.text)
+            return self._holder_of_member(self._unit.find_owner(function), field.text)
         classes = self._members.get(field.text, set())
         return Holder("member", next(iter(classes)), field.text) if len(classes) == 1 else None
 
@@ -271,10 +273,10 @@ class NodeHolders:
         owner = called.child("argument") if called is not None and is_method else None
         same = owner if name in _SAME_METHODS else None
         if name in _SAME_FUNCTIONS:
-            same = next(iter(arguments_of(call)), None)
+            same = next(iter(list_arguments(call)), None)
         if same is not None:
-            return self.node_of(same, function, depth + 1)
-        of_class = self._unit.owner_of(function)
+            return self.find_node(same, function, depth + 1)
+        of_class = self._unit.find_owner(function)
         if name in _SAME_METHODS:
             return of_class if of_class in self._classes else None
         is_own = owner is None or owner.kind == "this"
@@ -289,7 +291,7 @@ class NodeHolders:
         owners = None if owner is None else {*self.with_bases(owner)}
         methods = []
         for function in self._functions.get(name, ()):
-            of_class = self._unit.owner_of(function)
+            of_class = self._unit.find_owner(function)
             if of_class and (owners is None or of_class in owners):
                 methods.append(function)
         return methods
@@ -308,20 +310,20 @@ class NodeHolders:
         if len(statements) != 1 or statements[0].kind != "return_statement":
             return None
         returned = statements[0].children
-        return self.node_of(returned[0], getter, depth + 1) if returned else None
+        return self.find_node(returned[0], getter, depth + 1) if returned else None
 
     # --- What is given a node
     # ----------------------------------------------------------------------
 
-    def uses_of(self, holder: Holder) -> Iterator[CppNode]:
+    def find_uses(self, holder: Holder) -> Iterator[CppNode]:
         """Yield where the name of what holds a node is written, but in its declaration."""
         for use in self._unit.uses.get(holder.name, ()):
             self._budget.charge(1)
             function = self._unit.function_around(use)
-            if function is None or declaration_of(use) is not None:
+            if function is None or find_declaration(use) is not None:
                 continue
             expression = use.parent if use.field == "field" and use.parent is not None else use
-            if self.node_of(expression, function) == holder:
+            if self.find_node(expression, function) == holder:
                 yield use
 
     def holder_given(self, node: CppNode, function: CppFunction) -> Holder | None:
@@ -352,7 +354,7 @@ class NodeHolders:
         if around is not None and around.kind == "init_declarator" and value.field == "value":
             declarator = around.child("declarator")
             written = name_in(declarator) if declarator is not None else None
-        key = self.node_of(written, function) if written is not None else None
+        key = self.find_node(written, function) if written is not None else None
         return key if isinstance(key, Holder) else None
 
     def _holder_of_argument(
@@ -360,7 +362,7 @@ class NodeHolders:
     ) -> Holder | None:
         """Return the parameter, or the member, that gets an argument."""
         if taker.kind == "field_initializer":
-            member = self._holder_of_member(self._unit.owner_of(function), taker.children[0].text)
+            member = self._holder_of_member(self._unit.find_owner(function), taker.children[0].text)
             if member is not None:
                 return member
         arguments = [child for child in given.children if child.kind != "comment"]
@@ -380,7 +382,7 @@ class NodeHolders:
             return None
         kind, declarator = (parameters[position].child(role) for role in ("type", "declarator"))
         name = name_in(declarator) if declarator is not None else None
-        scopes = self._unit.scopes_of(function)
+        scopes = self._unit.list_scopes(function)
         is_node = kind is not None and self.is_node_type(kind.text, scopes)
         return name.text if name is not None and (is_node or function.is_template) else None
 
@@ -388,7 +390,7 @@ class NodeHolders:
         """Return the functions and constructors that may get the arguments of something."""
         if taker.kind == "call_expression":
             return self._called_in(taker, function)
-        owner = self._unit.owner_of(function)
+        owner = self._unit.find_owner(function)
         if taker.kind == "field_initializer":
             return self._constructors(self._type_of_member(taker.children[0].text, owner), function)
         written = class_written(taker)
@@ -400,7 +402,7 @@ class NodeHolders:
         """Return the functions, methods and constructors that a call may mean."""
         name, owner, called = (
             called_name(call),
-            self._unit.owner_of(function),
+            self._unit.find_owner(function),
             call.child("function"),
         )
         scope, _, short = name.rpartition("::")
@@ -410,14 +412,14 @@ class NodeHolders:
         if called is not None and called.kind == "field_expression":
             return self._called_methods(called, short, function)
         methods = self._methods_named(short, owner) if owner and short == name else []
-        free = [each for each in self._functions.get(short, ()) if not self._unit.owner_of(each)]
+        free = [each for each in self._functions.get(short, ()) if not self._unit.find_owner(each)]
         return methods or [*free, *self._constructors(name, function)]
 
     def _called_methods(
         self, called: CppNode, name: str, function: CppFunction
     ) -> Sequence[CppFunction]:
         """Return the methods of an object of a name, or what emplace() of a member constructs."""
-        owner, receiver = self._unit.owner_of(function), called.child("argument")
+        owner, receiver = self._unit.find_owner(function), called.child("argument")
         is_own = receiver is not None and receiver.kind == "this"
         methods = self._methods_named(name, owner if is_own else None)
         member = receiver.text if receiver is not None else ""
@@ -445,10 +447,10 @@ class NodeHolders:
         if not written:
             return []
         constructors = []
-        for meaning in self._unit.meanings(plain(written), self._unit.scopes_of(function)):
+        for meaning in self._unit.meanings(plain(written), self._unit.list_scopes(function)):
             short = meaning.rpartition("::")[2]
             for candidate in self._functions.get(short, ()):
-                if self._unit.owner_of(candidate) == meaning:
+                if self._unit.find_owner(candidate) == meaning:
                     constructors.append(candidate)
         return constructors
 

@@ -81,11 +81,11 @@ _VALUE_METHODS = frozenset(
 )
 
 
-def endpoint_of(
+def read_endpoint(
     kind: EndpointKind, call: CppCall, unit: CppUnit, scopes: Sequence[str], position: int = 0
 ) -> Endpoint:
     """Return what a call opens; `position` is that of the name among its arguments."""
-    name, parts = name_of(call.argument(position), call.owner)
+    name, parts = read_name(call.argument(position), call.owner)
     qos = Qos()
     if kind in ("publisher", "subscription"):
         qos = _qos(call.argument(1))
@@ -121,7 +121,7 @@ def filter_subscription(
     """
     if len(given) not in (2, 3, 4):
         return None
-    name, parts = name_of(given[1])
+    name, parts = read_name(given[1])
     qos = _qos(given[2]) if len(given) > 2 else _preset("rmw_qos_profile_default")
     return Endpoint("subscription", type_name, name, at, qos, parts)
 
@@ -136,7 +136,7 @@ def message_type(written: str, unit: CppUnit, scopes: Sequence[str]) -> str | No
     return types.pop() if len(types) == 1 else None
 
 
-def name_of(value: CppValue, node: CppValue = None) -> tuple[str | None, tuple[NamePart, ...]]:
+def read_name(value: CppValue, node: CppValue = None) -> tuple[str | None, tuple[NamePart, ...]]:
     """Return a name that is plain text, or the parts of one that is not.
 
     `node` is what has the node, if that is not the object itself.
@@ -200,7 +200,7 @@ def facts_of_method(
     """Yield what a method of a node declares, opens or reads."""
     name, at = call.short, call.node.location
     if name in _ENDPOINTS:
-        yield endpoint_of(_ENDPOINTS[name], call, unit, scopes)
+        yield read_endpoint(_ENDPOINTS[name], call, unit, scopes)
     elif name in _TIMERS:
         yield Timer(_duration(call.argument(0)), at)
     elif name == "declare_parameters":

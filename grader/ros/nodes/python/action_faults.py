@@ -38,7 +38,7 @@ def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Ite
         names = [parameter.arg for parameter in function.args.args if parameter.arg != "self"]
         if len(names) != 1 or function.decorator_list:
             continue
-        used = _attributes_of(names[0], function)
+        used = _list_attributes(names[0], function)
         if used is None:
             continue
         states = _ENDING_STATES.intersection(used)
@@ -129,12 +129,12 @@ def _paths_through(statement: ast.stmt) -> _OpenPaths:
         case ast.Try() | ast.TryStar():
             return _paths_of_try(statement)
     paths = _LEAVING.get(type(statement), _NO_PATH)
-    for branch in _branches_of(statement):
+    for branch in _list_branches(statement):
         paths = paths.joined(_paths_without_state(branch))
     return paths
 
 
-def _branches_of(statement: ast.stmt) -> list[list[ast.stmt]]:
+def _list_branches(statement: ast.stmt) -> list[list[ast.stmt]]:
     """Return the blocks of a statement of which one runs; one without blocks does nothing."""
     match statement:
         case ast.If(body=body, orelse=orelse):
@@ -168,7 +168,7 @@ def _paths_of_try(statement: ast.Try | ast.TryStar) -> _OpenPaths:
     return _OpenPaths(paths.reaches_end, paths.breaks or last.breaks, paths.returns or last.returns)
 
 
-def _attributes_of(name: str, function: AnyFunction) -> set[str] | None:
+def _list_attributes(name: str, function: AnyFunction) -> set[str] | None:
     """Return the attributes of a variable that a function uses; None where it is used otherwise."""
     used = set[str]()
     owners = set[ast.AST]()

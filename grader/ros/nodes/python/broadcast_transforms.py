@@ -173,7 +173,7 @@ def _hands_on(node: ast.AST, name: str) -> bool:
         is_set = not isinstance(getattr(part, "ctx", None), ast.Load)
         if written == name:
             is_shown = isinstance(node, ast.List | ast.Tuple | ast.FormattedValue)
-            is_sent = is_shown or _is_call_of(node, _KEEPING)
+            is_sent = is_shown or _calls_method(node, _KEEPING)
             is_known = is_set or is_sent
         elif is_set:
             is_known = isinstance(node, ast.Assign | ast.AugAssign)
@@ -184,7 +184,7 @@ def _hands_on(node: ast.AST, name: str) -> bool:
     return False
 
 
-def _is_call_of(node: ast.AST, names: Collection[str]) -> bool:
+def _calls_method(node: ast.AST, names: Collection[str]) -> bool:
     """Return whether a call is one of a method with one of these names."""
     return isinstance(node, ast.Call) and dotted(node.func).rpartition(".")[2] in names
 

@@ -135,12 +135,12 @@ def wrong_callbacks(
         faults = []
         for call in part.calls:
             if last_name(call.func) in _CALLBACKS and is_of_rclpy(call, part):
-                faults += [(call, fault) for fault in _faults_of(code, part, call, functions)]
+                faults += [(call, fault) for fault in _find_faults(code, part, call, functions)]
         certain = set(certain_nodes(part.node)) if faults else set[ast.AST]()
         yield from (fault for call, fault in faults if call in certain)
 
 
-def _faults_of(
+def _find_faults(
     code: Code, part: CodePart, call: ast.Call, functions: CallbackFunctions
 ) -> Iterator[CodeFault]:
     """Yield the callbacks that a call is given and that cannot be called."""

@@ -88,11 +88,11 @@ class CalledFunctions:
         if called is None:
             return None
 
-        def kind_of(argument: ast.expr) -> ArgumentKind | None:
-            return known_kind(argument) or self._kind_of(owner, argument)
+        def find_kind(argument: ast.expr) -> ArgumentKind | None:
+            return known_kind(argument) or self._find_kind(owner, argument)
 
         source = self._code.source
-        written = Written(call, source, CodeEdits(source).span, kind_of, filled)
+        written = Written(call, source, CodeEdits(source).span, find_kind, filled)
         return wrong_call(written, called, self._releases)
 
     def _called_function(self, call: ast.Call, owner: ast.ClassDef | None) -> str | None:
@@ -158,15 +158,15 @@ class CalledFunctions:
             return True
         return method in self._bound_in.get(owner, ())
 
-    def _kind_of(self, owner: ast.ClassDef | None, argument: ast.expr) -> ArgumentKind | None:
+    def _find_kind(self, owner: ast.ClassDef | None, argument: ast.expr) -> ArgumentKind | None:
         """Return what an argument surely is."""
         if isinstance(argument, ast.BinOp):
-            kinds = {self._kind_of(owner, side) for side in (argument.left, argument.right)}
+            kinds = {self._find_kind(owner, side) for side in (argument.left, argument.right)}
             return "number" if kinds == {"number"} else None
         if isinstance(argument, ast.Constant | ast.JoinedStr | ast.Lambda):
             return _kind_of_value(argument)
         name = dotted(argument)
-        methods = methods_of(owner) if owner is not None else {}
+        methods = list_methods(owner) if owner is not None else {}
         method = methods.get(name.removeprefix("self.")) if name.startswith("self.") else None
         if method is not None and not method.decorator_list and method.name not in self._stored:
             return "function"
@@ -219,7 +219,7 @@ def names_in_class(owner: ast.ClassDef) -> set[str]:
     return names
 
 
-def methods_of(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:
+def list_methods(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:
     """Return the methods of a class by their names."""
     return {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
 

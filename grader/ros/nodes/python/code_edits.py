@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from grader.base.problems import NO_FIXES, Fix, Fixes
 from grader.base.source import Source
-from grader.ros.python.parse import Position, location_in, position_of
+from grader.ros.python.parse import Position, location_in, make_position
 
 _PLAIN = (ast.Expr, ast.Assign, ast.AnnAssign, ast.Pass)
 
@@ -19,7 +19,7 @@ class CodeEdits:
     def span(self, node: ast.expr | ast.stmt | ast.keyword) -> tuple[int, int]:
         """Return the offsets at which a node begins and ends."""
         end = Position(node.end_lineno or node.lineno, (node.end_col_offset or 0) + 1)
-        return self._offset(position_of(node)), self._offset(end)
+        return self._offset(make_position(node)), self._offset(end)
 
     def _offset(self, position: Position) -> int:
         location = location_in(self._source, position)

@@ -51,7 +51,7 @@ from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_pass
 from grader.ros.nodes.python.undefined_names import undefined_names, wrong_imports
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import binds_unseen, constant_in, dotted, last_name
-from grader.ros.python.parse import AnyFunction, Code, every_node, position_of
+from grader.ros.python.parse import AnyFunction, Code, every_node, make_position
 from grader.ros.python.values import QualifiedName
 from grader.ros.python.walking import children, walk
 
@@ -249,7 +249,7 @@ def _wrong_calls(
             if wrong_call is not None:
                 wrong[call] = wrong_call
         certain = set(certain_nodes(part.node)) if wrong else set[ast.AST]()
-        for call in sorted(wrong.keys() & certain, key=position_of):
+        for call in sorted(wrong.keys() & certain, key=make_position):
             at = module.code.at(call)
             yield CodeFault("call-arguments", wrong[call].reaction, at, fixes=wrong[call].fixes)
 
@@ -367,7 +367,7 @@ class _Search:
                     read.append(node)
                 case ast.AugAssign(target=ast.Attribute(value=ast.Name(id="self")) as target):
                     read.append(target)
-        for node in sorted(read, key=position_of):
+        for node in sorted(read, key=make_position):
             name = node.attr
             if name in own_names or name in known or name in asked or name.startswith("_"):
                 continue
@@ -582,7 +582,7 @@ class _Search:
         calls = [call for call in _calls_in(function) if dotted(call.func) == "time.sleep"]
         if not has_others or not calls or "time" not in self._module.imports:
             return
-        at = self._at(min(calls, key=position_of))
+        at = self._at(min(calls, key=make_position))
         message = (
             f"while time.sleep() in the callback {function.name}() waits, no other callback runs"
         )
@@ -663,9 +663,9 @@ class _Search:
         goals, answering = list[RegisteredGoal](), list[RegisteredGoal]()
         servers = [each for each in self._registered if each.by == "ActionServer"]
         for server in servers:
-            goals += self._goals_of(server, server.given)
+            goals += self._find_goals(server, server.given)
             call = server.call
-            answering += self._goals_of(
+            answering += self._find_goals(
                 server, given_argument(call, len(call.args), "goal_callback")
             )
         yield from goals_without_state(self._code, goals)
@@ -679,7 +679,7 @@ class _Search:
             names = imported_names(every_node(self._code.tree))
             yield from buffers_without_listener(self._code, names)
 
-    def _goals_of(self, server: _Registered, given: ast.expr | None) -> list[RegisteredGoal]:
+    def _find_goals(self, server: _Registered, given: ast.expr | None) -> list[RegisteredGoal]:
         """Return the function that an action server is given; nothing where it is not known."""
         function = self._callback(server._replace(given=given)) if given is not None else None
         return [RegisteredGoal(function, server.call)] if function is not None else []

@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from typing import NamedTuple, TypeVar
 
 from grader.ros.nodes.node_facts import NamePart
-from grader.ros.python.constants import dotted, offset_of
+from grader.ros.python.constants import dotted, make_order
 from grader.ros.python.values import Call, Value
 from grader.ros.python.walking import walk
 
@@ -59,7 +59,7 @@ def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
 
     A callback of parameters binds an attribute anew only after the node is started.
     """
-    ordered = sorted(nodes, key=offset_of)
+    ordered = sorted(nodes, key=make_order)
     if of_self:
         later = _nodes_of_parameter_callbacks(ordered)
         ordered = [node for node in ordered if node not in later]
@@ -223,11 +223,11 @@ class EndpointNames:
         elif name in self._known.values:
             yield from self._parts(self._known.values[name], items, depth + 1)
         elif (loop := self._loop(name, node)) is not None:
-            yield self._item_of(loop.items)
+            yield self._make_part(loop.items)
         else:
             yield _UNKNOWN
 
-    def _item_of(self, node: ast.expr) -> NamePart:
+    def _make_part(self, node: ast.expr) -> NamePart:
         """Return the part that an item of a list is: of a parameter, or not known."""
         for _ in range(_MAX_DEPTH):
             parameter = self._parameter(node)

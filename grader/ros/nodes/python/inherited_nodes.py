@@ -11,7 +11,7 @@ from typing import NamedTuple
 from grader.base.source import Location
 from grader.ros.nodes.message_uses import given_argument
 from grader.ros.nodes.node_facts import NodeFacts
-from grader.ros.nodes.python.called_functions import methods_of
+from grader.ros.nodes.python.called_functions import list_methods
 from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
 from grader.ros.python.constants import dotted
 from grader.ros.python.parse import own_nodes
@@ -67,10 +67,10 @@ def _joined(
     chain = _base_classes(node.class_name, classes)
     if len(chain) < 2 or any(name not in by_name for name in chain):
         return None
-    constructors = _constructors_of([classes[name] for name in chain])
+    constructors = _list_constructors([classes[name] for name in chain])
     if not constructors or _is_any_replaced(chain, by_name, classes):
         return None
-    return _sum_of(
+    return _add_bases(
         node._replace(name=_passed_name(constructors), named_at=None),
         [by_name[name] for name in chain],
         is_settled=len(constructors) == len(chain)
@@ -79,7 +79,7 @@ def _joined(
     )
 
 
-def _sum_of(node: NodeFacts, facts: Sequence[NodeFacts], *, is_settled: bool) -> NodeFacts:
+def _add_bases(node: NodeFacts, facts: Sequence[NodeFacts], *, is_settled: bool) -> NodeFacts:
     """Return a node with the facts of its bases; `is_settled`: no argument leaves a doubt."""
     endpoints, parameters, timers = [*node.endpoints], [*node.parameters], [*node.timers]
     frames, transforms, doubts = [*node.frames], [*node.transforms], [*node.doubts]
@@ -112,13 +112,13 @@ def _is_any_replaced(
     return False
 
 
-def _constructors_of(chain: Sequence[OwnClass]) -> list[_Constructor]:
+def _list_constructors(chain: Sequence[OwnClass]) -> list[_Constructor]:
     """Return the constructors of a class and its bases; none if one may do something else."""
     constructors: list[_Constructor] = []
     for own_class in chain:
-        if "__init__" not in methods_of(own_class.node):
+        if "__init__" not in list_methods(own_class.node):
             continue  # that of the base is called
-        constructor = _constructor_of(own_class)
+        constructor = _find_constructor(own_class)
         if constructor is None:
             return []
         constructors.append(constructor)
@@ -145,8 +145,8 @@ def _replaces(derived: OwnClass, base: OwnClass, of_base: NodeFacts) -> bool:
 
     It is an attribute that the base reads, or a method in which the base does so.
     """
-    methods, own_methods = methods_of(base.node), methods_of(derived.node)
-    lines = [at.line for at in _places_of(of_base) if at.path == base.path]
+    methods, own_methods = list_methods(base.node), list_methods(derived.node)
+    lines = [at.line for at in _list_places(of_base) if at.path == base.path]
     read = _read_attributes(base.node)
     for name in _replaced_names(derived.node):
         if name in read and name not in own_methods:
@@ -159,7 +159,7 @@ def _replaces(derived: OwnClass, base: OwnClass, of_base: NodeFacts) -> bool:
     return False
 
 
-def _places_of(node: NodeFacts) -> Iterator[Location]:
+def _list_places(node: NodeFacts) -> Iterator[Location]:
     """Yield where a class declares and opens what it does."""
     for endpoint in node.endpoints:
         yield endpoint.location
@@ -197,9 +197,9 @@ def _replaced_names(node: ast.ClassDef) -> Iterator[str]:
                 yield name
 
 
-def _constructor_of(own_class: OwnClass) -> _Constructor | None:
+def _find_constructor(own_class: OwnClass) -> _Constructor | None:
     """Return the constructor of a class that surely calls that of its base once."""
-    function = methods_of(own_class.node).get("__init__")
+    function = list_methods(own_class.node).get("__init__")
     if function is None or function.decorator_list:
         return None
     calls = [

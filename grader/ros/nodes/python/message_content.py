@@ -13,7 +13,7 @@ from grader.ros.nodes.message_uses import CodePart, given_argument
 from grader.ros.nodes.node_facts import ImageEncoding, SynchronisedType
 from grader.ros.nodes.python.endpoint_names import Bindings
 from grader.ros.python.constants import dotted, last_name
-from grader.ros.python.parse import location_in, position_of
+from grader.ros.python.parse import location_in, make_position
 from grader.ros.python.values import QualifiedName, Scope, Value
 from grader.ros.python.walking import walk
 
@@ -139,7 +139,7 @@ class ContentReader:
         return value.name if isinstance(value, QualifiedName) else ""
 
     def _at(self, node: ast.expr) -> Location:
-        return location_in(self._source, position_of(node))
+        return location_in(self._source, make_position(node))
 
 
 def _takes_any(call: ast.Call) -> bool:

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator
 
 from grader.base.problems import NO_FIXES
 from grader.ros.nodes.node_facts import CodeFault
-from grader.ros.nodes.python.called_functions import methods_of, names_in_class
+from grader.ros.nodes.python.called_functions import list_methods, names_in_class
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.rclpy_names import HARMLESS
 from grader.ros.python.constants import dotted, last_name
@@ -46,7 +46,7 @@ def early_uses(
     `owner` is a class whose only base is a node of rclpy, `replaced` are attributes that code sets.
     `bases` are the classes that others inherit: the constructors of these may make the node.
     """
-    constructor = methods_of(owner).get("__init__")
+    constructor = list_methods(owner).get("__init__")
     if constructor is None or _is_made_elsewhere(owner, constructor, bases):
         return
     when, fixes = "called later", NO_FIXES
@@ -75,7 +75,7 @@ def _is_made_elsewhere(
     bases: Collection[str],
 ) -> bool:
     """Return whether something besides a constructor may make the node."""
-    others = [method for method in methods_of(owner).values() if method is not constructor]
+    others = [method for method in list_methods(owner).values() if method is not constructor]
     if any(map(_initialises, others)):
         return True
     return not _initialises(constructor) and (
@@ -93,7 +93,7 @@ def _statements_before(constructor: AnyFunction) -> list[ast.stmt]:
 
 def _may_be_made(owner: ast.ClassDef, constructor: AnyFunction) -> bool:
     """Return whether something else may make the node: a decorator, or a function that gets it."""
-    if owner.decorator_list or constructor.decorator_list or "__new__" in methods_of(owner):
+    if owner.decorator_list or constructor.decorator_list or "__new__" in list_methods(owner):
         return True
     for node in walk(constructor):
         if isinstance(node, ast.Call) and last_name(node.func) not in HARMLESS:
@@ -114,7 +114,7 @@ def _first_need(
     statement: ast.stmt, owner: ast.ClassDef, known: Collection[str]
 ) -> ast.Call | None:
     """Return the first call of a method that needs the node; also in methods that are called."""
-    methods = methods_of(owner)
+    methods = list_methods(owner)
     entered = set[str]()
     pending: list[ast.AST] = [statement]
     while pending:

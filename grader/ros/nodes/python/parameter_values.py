@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator
 
 from grader.ros.nodes.message_uses import certain_nodes
 from grader.ros.nodes.node_facts import CodeFault
-from grader.ros.nodes.python.called_functions import methods_of
+from grader.ros.nodes.python.called_functions import list_methods
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.constants import dotted
 from grader.ros.python.parse import Code, every_node
@@ -28,7 +28,7 @@ def parameters_as_values(code: Code, nodes: Collection[ast.ClassDef]) -> Iterato
         return
     for owner in nodes:
         attributes = {name for name in _holders(owner) if name.startswith("self.")}
-        for method in methods_of(owner).values():
+        for method in list_methods(owner).values():
             held = attributes | _holders(method)
             used = next(_computations(certain_nodes(method), held), None)
             if used is not None and _is_sure(code, used):

@@ -62,7 +62,7 @@ from grader.ros.package.entry_points import (
 )
 from grader.ros.package.package import Package
 from grader.ros.python.budget import Budget
-from grader.ros.python.constants import Constants, constant_in, dotted, offset_of
+from grader.ros.python.constants import Constants, constant_in, dotted, make_order
 from grader.ros.python.evaluation import record
 from grader.ros.python.parse import (
     START,
@@ -70,8 +70,8 @@ from grader.ros.python.parse import (
     Code,
     every_node,
     location_in,
+    make_position,
     own_nodes,
-    position_of,
 )
 from grader.ros.python.python_slips import python_slips
 from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknown, Value
@@ -197,7 +197,7 @@ def _without_stopped(
     package: Package, program: NodeProgram, searched: "_Searched"
 ) -> tuple[NodeProgram, list[Doubt]]:
     """Return a program, without its nodes if it stops before it makes them; and why it stops."""
-    slips = _slips_of(package, program, searched)
+    slips = _find_slips(package, program, searched)
     if slips is None:
         doubt = Doubt("not all programs are read", program.location)
         return program._replace(nodes=()), [doubt]
@@ -302,12 +302,14 @@ def program_slips(package: Package) -> Iterator[Slip]:
     modules, _ = _read_modules(package)
     searched = _search_faults(modules.values(), package.releases)
     for program in _programs(package, {}, ()):
-        for slip in _slips_of(package, program, searched) or ():
+        for slip in _find_slips(package, program, searched) or ():
             slips.setdefault(slip.edits, slip)
     yield from slips.values()
 
 
-def _slips_of(package: Package, program: NodeProgram, searched: _Searched) -> Sequence[Slip] | None:
+def _find_slips(
+    package: Package, program: NodeProgram, searched: _Searched
+) -> Sequence[Slip] | None:
     """Return the slips of a program; None where too many programs are in a file to search each."""
     data = package.tree.read(program.path, _MAX_SEARCHED)
     if not package.budget.take_of_whole(len(data or b"") // _BYTES_A_PART):
@@ -440,7 +442,7 @@ def _may_be_node_class(name: str) -> bool:
 
 
 def _find_calls(nodes: Sequence[ast.AST]) -> list[ast.Call]:
-    return sorted((node for node in nodes if isinstance(node, ast.Call)), key=offset_of)
+    return sorted((node for node in nodes if isinstance(node, ast.Call)), key=make_order)
 
 
 class _Module:
@@ -488,7 +490,7 @@ class _Module:
     def _add_class(self, node: ast.ClassDef, scope: Scope) -> None:
         """Keep a class and its methods, which reach its constants as attributes of self."""
         at, full = self._at(node), f"{self._name}.{node.name}"
-        bases = [self._constants.value_of(base, scope) for base in node.bases]
+        bases = [self._constants.evaluate_node(base, scope) for base in node.bases]
         self.bases[full] = [
             base.name if isinstance(base, QualifiedName) else None for base in bases
         ]
@@ -586,12 +588,12 @@ class _Module:
     @cached_property
     def _content(self) -> ContentReader:
         return ContentReader(
-            self._parts, self._code.source, self._constants.value_of, self._bindings_around
+            self._parts, self._code.source, self._constants.evaluate_node, self._bindings_around
         )
 
     def _bindings_around(self, part: CodePart) -> Bindings:
         """Return what the names in a function, and the attributes of its class, are bound to."""
-        return self._bindings_in(part.of).within(self._bindings_of(part.node))
+        return self._bindings_in(part.of).within(self._find_bindings(part.node))
 
     def text(self) -> ModuleText:
         """Return the module as it is searched for faults."""
@@ -616,7 +618,7 @@ class _Module:
     @cached_property
     def field_uses(self) -> Sequence[FieldUse]:
         """The fields that the module uses of messages, services and actions."""
-        return [*field_uses(self._code, self._parts, self._constants.value_of)]
+        return [*field_uses(self._code, self._parts, self._constants.evaluate_node)]
 
     def _node(
         self,
@@ -684,11 +686,11 @@ class _Module:
         The result is None where it is missing, Unknown where * or ** may give it.
         """
         if any(isinstance(argument, ast.Starred) for argument in call.args[: position + 1]):
-            return Unknown("it is unpacked", position_of(call))
+            return Unknown("it is unpacked", make_position(call))
         given = given_argument(call, position, name)
         if given is None and any(keyword.arg is None for keyword in call.keywords):
-            return Unknown("it is unpacked", position_of(call))
-        return self._constants.value_of(given, part.scope)
+            return Unknown("it is unpacked", make_position(call))
+        return self._constants.evaluate_node(given, part.scope)
 
     def _endpoints(
         self, part: CodePart, call: ast.Call, position: int, name: str, endpoint: Endpoint
@@ -737,18 +739,18 @@ class _Module:
                 yield None, parts if kinds != {"unknown"} else ()
 
     def _value_in(self, scope: Scope, node: ast.expr) -> Value:
-        return self._constants.value_of(node, scope)
+        return self._constants.evaluate_node(node, scope)
 
     def _bindings_in(self, of: Location | None) -> Bindings:
         """Return what the attributes of self in a class are bound to once."""
         if of is None:
             return Bindings({}, {})
-        return self._bindings_of(self._class_nodes[of])
+        return self._find_bindings(self._class_nodes[of])
 
     @cached_property
-    def _bindings_of(self) -> Callable[[ast.AST], Bindings]:
+    def _find_bindings(self) -> Callable[[ast.AST], Bindings]:
         """What the names in a function, or the attributes of self in a class, are bound to."""
-        return cache(_bindings_of)
+        return cache(_find_bindings)
 
     def _receiver(self, part: CodePart, node: ast.expr) -> Location | None:
         """Return the place of the node that an expression is; None where that is not known."""
@@ -773,7 +775,7 @@ class _Module:
             ):
                 self._facts[part.of] += self._read_init(part, call, owner)
             case ast.Attribute(value=owner, attr=method) if method in _METHODS:
-                self._read_method_of(self._receiver(part, owner), part, call, method)
+                self._read_node_method(self._receiver(part, owner), part, call, method)
             case ast.Attribute(value=owner, attr=method) if (
                 method in _LOOKUPS and part.of in self._facts and self._is_buffer(part, owner)
             ):
@@ -796,7 +798,7 @@ class _Module:
         )
         self._facts[part.of] += sent_transforms(method, call)
 
-    def _read_method_of(
+    def _read_node_method(
         self, at: Location | None, part: CodePart, call: ast.Call, method: str
     ) -> None:
         """Add what the call of a method declares or opens to the facts of the node at a place."""
@@ -844,7 +846,7 @@ class _Module:
     def _filtered(self, part: CodePart, call: ast.Call) -> Iterator[Endpoint]:
         """Yield the subscription of a filter: Subscriber(node, type, topic, qos_profile=...)."""
         made = self._argument(part, call, 1, "msg_type")
-        qos = self._constants.value_of(
+        qos = self._constants.evaluate_node(
             given_argument(call, len(call.args), "qos_profile"), part.scope
         )
         type_name = made.name if isinstance(made, QualifiedName) else None
@@ -862,7 +864,7 @@ class _Module:
         """Yield the name that a class gives its node, if its base is rclpy's Node itself."""
         assert part.of is not None
         is_super = isinstance(owner, ast.Call) and dotted(owner.func) == "super"
-        base = self._constants.value_of(owner, part.scope)
+        base = self._constants.evaluate_node(owner, part.scope)
         is_base = isinstance(base, QualifiedName) and base.name in NODE_CLASSES
         if (is_super or is_base) and NODE_CLASSES.intersection(self.bases[self._classes[part.of]]):
             name = self._argument(part, call, 0 if is_super else 1, "node_name")
@@ -945,7 +947,7 @@ def _has_alias(tree: ast.Module) -> bool:
     )
 
 
-def _bindings_of(node: ast.AST) -> Bindings:
+def _find_bindings(node: ast.AST) -> Bindings:
     return bindings(walk(node), of_self=isinstance(node, ast.ClassDef))
 
 

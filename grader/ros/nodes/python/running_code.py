@@ -14,11 +14,11 @@ from grader.base.source import Edit, Location
 from grader.ros.nodes.message_uses import given_argument, suppresses
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.nodes.python.branches import may_catch_error, program_name
-from grader.ros.nodes.python.called_functions import methods_of
+from grader.ros.nodes.python.called_functions import list_methods
 from grader.ros.nodes.python.code_faults import ModuleText
 from grader.ros.nodes.python.rclpy_names import CALLBACKS
 from grader.ros.python.constants import binds_unseen, dotted
-from grader.ros.python.parse import Position, every_node, location_in, position_of
+from grader.ros.python.parse import Position, every_node, location_in, make_position
 from grader.ros.python.walking import children, walk
 
 _NEW_LINE = re.compile(r"\n[ \t]*")
@@ -82,13 +82,13 @@ class _RunningCode:
         if self._function in self._functions:
             self._pending.append(_Function(self._functions[self._function]))
         if "main" in self._functions:
-            self._keep(position_of(self._functions["main"]))
+            self._keep(make_position(self._functions["main"]))
         seen = set[ast.FunctionDef]()
         while self._pending:
             function = self._pending.pop(0)
             if function.node not in seen:
                 seen.add(function.node)
-                self._keep(position_of(function.node))
+                self._keep(make_position(function.node))
                 self._run(function.node.body, function.owner)
         return self._places
 
@@ -144,12 +144,12 @@ class _RunningCode:
                     pending += [target, *([value] if value is not None else [])]
                     continue
                 case ast.Name():
-                    self._keep(position_of(part))
+                    self._keep(make_position(part))
                 case ast.Attribute(attr=name):
                     end = (part.end_col_offset or 0) - len(name) + 1
                     self._keep(Position(part.end_lineno or part.lineno, end))
                 case ast.Call():
-                    self._keep(position_of(part))
+                    self._keep(make_position(part))
                     called.append(dotted(part.func))
                     self._pending += self._functions_run_by(part, owner)
             pending += children(part)
@@ -161,9 +161,9 @@ class _RunningCode:
         if name in self._functions:
             yield _Function(self._functions[name])
         node_class = self._classes.get(name)
-        if node_class is not None and "__init__" in methods_of(node_class):
-            yield _Function(methods_of(node_class)["__init__"], node_class)
-        methods = methods_of(owner) if owner is not None else {}
+        if node_class is not None and "__init__" in list_methods(node_class):
+            yield _Function(list_methods(node_class)["__init__"], node_class)
+        methods = list_methods(owner) if owner is not None else {}
         argument = CALLBACKS.get(name.removeprefix("self."))
         given = given_argument(call, *argument) if argument is not None else None
         for named in (name, dotted(given) if given is not None else ""):

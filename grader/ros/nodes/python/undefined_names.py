@@ -16,7 +16,7 @@ from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.used_fields import resolve_field
 from grader.ros.python.bindings import names_bound
 from grader.ros.python.constants import binds_unseen
-from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
+from grader.ros.python.parse import Code, Position, every_node, location_in, make_position
 from grader.ros.python.walking import walk
 
 # Messages of pyflakes about what certainly fails when it runs.
@@ -108,7 +108,7 @@ def _unevaluated(tree: ast.Module) -> set[Position]:
         annotation = getattr(node, "annotation", None) or getattr(node, "returns", None)
         for part in walk(annotation) if annotation is not None else ():
             if isinstance(part, ast.expr):
-                places.add(position_of(part))
+                places.add(make_position(part))
     return places
 
 
