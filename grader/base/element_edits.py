@@ -4,7 +4,7 @@ Numbers are written as a person writes them.
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import isclose, isfinite
 
 from grader.base import markup
@@ -116,6 +116,70 @@ def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
         pieces += (text[position:start], edit.new)
         position = start + len(edit.old)
     return "".join((*pieces, text[position:]))
+
+
+def edit_files(
+    read: Callable[[str], bytes | None], edits: Iterable[Edit]
+) -> dict[str, bytes | None] | None:
+    """Return the files that edits change, by path; None where the edits do not fit.
+
+    `read` returns a file as it is. A file that is renamed is None at its old path.
+    """
+    files: dict[str, bytes | None] = {}
+    for path, of_file in _group_by_file(edits).items():
+        text = (read(path) or b"").decode("utf-8", "surrogateescape")
+        renamed = next((edit.renamed for edit in of_file if edit.renamed), "")
+        after = edited(text, path, [edit for edit in of_file if not edit.renamed])
+        if after is None:
+            return None
+        if renamed:
+            files[path] = None
+        files[renamed or path] = after.encode("utf-8", "surrogateescape")
+    return files
+
+
+def edits_before(
+    read: Callable[[str], bytes | None], earlier: Iterable[Edit], later: Iterable[Edit]
+) -> Edits | None:
+    """Return edits of files after earlier ones as edits of the files before them.
+
+    None where they change what the earlier ones wrote. `read` returns a file as it is.
+    """
+    by_file = _group_by_file(earlier)
+    moved: list[Edit] = []
+    for edit in later:
+        if edit.path not in by_file:
+            moved.append(edit)
+            continue
+        before = Source(edit.path, (read(edit.path) or b"").decode("utf-8", "surrogateescape"))
+        start = _offset_before(before, by_file[edit.path], edit)
+        if start is None:
+            return None
+        moved.append(before.edit(start, start + len(edit.old), edit.new))
+    return tuple(moved)
+
+
+def _offset_before(before: Source, earlier: Sequence[Edit], edit: Edit) -> int | None:
+    """Return where an edit of a text begins in the text before earlier ones.
+
+    None where it changes what these wrote.
+    """
+    after = Source(before.path, edited(before.text, before.path, earlier) or "")
+    start = after.start_offset(edit)
+    moved = 0  # how far the earlier edits moved the text
+    for offset, one in _offsets(before, earlier):
+        if offset + moved + len(one.new) <= start:
+            moved += len(one.new) - len(one.old)
+        elif offset + moved < start + len(edit.old):
+            return None
+    return start - moved
+
+
+def _group_by_file(edits: Iterable[Edit]) -> dict[str, list[Edit]]:
+    by_file: dict[str, list[Edit]] = {}
+    for edit in edits:
+        by_file.setdefault(edit.path, []).append(edit)
+    return by_file
 
 
 def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:

@@ -29,6 +29,13 @@ class Slip(NamedTuple):
         return Fix(self.edits, self.assumption)
 
 
+def make_slip(
+    edits: Sequence[Edit], reaction: str, assumption: str, *, is_refused: bool = False
+) -> Slip:
+    """Return the slip that is where the first of its edits is."""
+    return Slip(tuple(edits), reaction, assumption, edits[0].location, is_refused)
+
+
 def fix_together(find_slips: Callable[[], Sequence[Slip]]) -> Fixes:
     """Return one fix of a file that nothing reads before all of its slips are corrected."""
 

@@ -51,6 +51,11 @@ class Edit(NamedTuple):
     new: str
     renamed: str = ""
 
+    @property
+    def location(self) -> Location:
+        """Where it begins."""
+        return Location(self.path, self.line, self.column)
+
 
 Edits = tuple[Edit, ...]
 

@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from grader.ros.package.robot_file import Absent as Absent
     from grader.ros.package.robot_file import Read as Read
     from grader.ros.package.robot_file import Unreadable as Unreadable
+    from grader.ros.package.robot_readings import RobotReadings as RobotReadings
+    from grader.ros.package.robot_readings import read_edited as read_edited
     from grader.ros.package.robots import is_robot as is_robot
     from grader.ros.urdf.driving import Drive as Drive
     from grader.ros.urdf.driving import describe_driving as describe_driving
@@ -78,6 +80,7 @@ else:
         "package.mesh_loading": "MeshLoader",
         "package.package": "MANIFEST SETUP Package",
         "package.robot_file": "Absent Read Unreadable",
+        "package.robot_readings": "RobotReadings read_edited",
         "package.robots": "is_robot",
         "urdf.driving": "Drive describe_driving plan_drive",
         "urdf.kinematics": "Configuration",

@@ -190,7 +190,7 @@ def test_one_mistake_is_one_diagnostic(graded_by_lab6: Run) -> None:
         assert found.message.endswith("did you mean 'lidar'? (-3 points: urdf-loads)")
         assert _notes(found) == [
             "the link 'lidr' is read as 'lidar'",
-            "Check line 38: link='lidr' of <child>.",
+            'Check line 38: ROS 2 rejects the file for `link="lidr"`.',
         ]
         await one.type(_LAB6, text.replace('rgba="0 0.6 0 1"', 'rgba="0 0.6 0 0"'))
         assert one.found() == [f"{_LAB6}:5:11-27: base-green"]

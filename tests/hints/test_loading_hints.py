@@ -38,7 +38,6 @@ _NOT_UNDONE = {
     "no-start-of-a-joint",
     "robot-twice",
     "no-robot",
-    "comment-not-closed",
     "declaration-opened-badly",
 }
 

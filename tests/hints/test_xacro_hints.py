@@ -142,25 +142,6 @@ def test_a_mistake_in_a_macro_is_not_corrected_in_its_calls() -> None:
     assert not [edit for edit in found.edits if edit.path == URDF]
 
 
-def test_a_value_that_a_call_lacks_on_a_side_that_nothing_tells() -> None:
-    """Both values are named and none is given, if the wheel is wrong with either: a half correct edit misleads."""
-    submission, text = mutant(URDF, 'side="right" outward="-1"', 'side="right"')
-    assert [edit.new for edit in search(submission).found[0].edits] == [' outward="-1"']
-    assert submission.reopen is not None
-    files = {
-        URDF: text.encode(),
-        WHEEL: MACROS_WHEEL.replace("wheel_width / 2}", "0.001}").encode(),
-    }
-    found = search(submission.reopen(overlaid(submission.whole_tree, files)))
-    [told] = [it for name, it in found.missing.items() if name == "urdf-loads"]
-    assert told.alternative is not None
-    assert texts([*told.proposal.edits, *told.alternative.edits]) == [
-        ' outward="1"',
-        ' outward="-1"',
-    ]
-    assert not [edit for edit in found.edits if "outward" in edit.new and edit.path == URDF]
-
-
 def texts(edits: Sequence[Edit]) -> list[str]:
     """Return what an edit writes, or the new name of its file."""
     return [edit.renamed or edit.new for edit in edits]

@@ -4,10 +4,12 @@ from collections.abc import Mapping
 
 import pytest
 
+from grader.base.slips import Slip
 from grader.lab.submission.edited import with_files
-from grader.lab.submission.robot_readings import proven_slips
 from grader.lab.submission.submission import Submission
-from grader.ros.package.robot_file import Absent, read_as_ros
+from grader.ros.package.robot_file import Read, read_as_ros
+from grader.ros.package.robot_readings import RobotReadings
+from grader.ros.python.budget import Budget
 from tests.grading.slips import DIFFDRIVE
 from tests.samples import LAB6, reference
 
@@ -18,12 +20,19 @@ _ENDS = '<parent link="a"/><child link="b"/>'
 _JOINT = f'<joint name="j" type="fixed">{_ENDS}</joint>'
 
 
+def _proven(submission: Submission) -> list[Slip]:
+    """Return the slips of a submission's robot that are proven."""
+    if not isinstance(submission.urdf, Read):
+        return []
+    return RobotReadings(submission.urdf, submission.surroundings(Budget())).find_slips()
+
+
 def _assumed(text: str, path: str = "my_robot.urdf") -> list[str]:
     """Return what is assumed of a robot, which is a file alone."""
     solution = reference(LAB6)
     files: dict[str, bytes | None] = dict.fromkeys(solution.whole_tree.files)
     submission = with_files(solution, {**files, path: text.encode()})
-    return [slip.assumption for slip in proven_slips(submission)]
+    return [slip.assumption for slip in _proven(submission)]
 
 
 def _robot(body: str) -> str:
@@ -176,17 +185,8 @@ def test_an_included_file() -> None:
     path = next(path for path in solution.whole_tree.files if path.endswith("ros2_control.xacro"))
     text = (solution.whole_tree.read(path, 1 << 20) or b"").replace(b"<robot", b"<Robot")
     changed: Mapping[str, bytes | None] = {path: text}
-    slips = [*proven_slips(with_files(solution, changed))]
+    slips = _proven(with_files(solution, changed))
     assert [slip.assumption for slip in slips] == ["<Robot> is read as <robot>"]
-
-
-def test_without_a_robot() -> None:
-    """A submission without a URDF has no slips of a robot."""
-    solution = reference(LAB6)
-    robots = [path for path in solution.whole_tree.files if path.endswith(".urdf")]
-    submission: Submission = with_files(solution, dict.fromkeys(robots))
-    assert isinstance(submission.urdf, Absent)
-    assert [*proven_slips(submission)] == []
 
 
 def test_an_end_tag_without_its_prefix() -> None:

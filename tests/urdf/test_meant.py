@@ -2,11 +2,18 @@
 
 import pytest
 
-from grader.ros.urdf.reader import read_urdf
+from grader.ros.package.robot_file import Surroundings, read_as_ros
+from grader.ros.package.robot_readings import read_as_meant
+from grader.ros.python.budget import Budget
+from grader.ros.urdf.reader import Reading
 
 pytestmark = pytest.mark.slow
 
 JOINT = '<joint name="j{0}" type="fixed"><parent link="{1}"/><child link="{2}"/></joint>'
+
+
+def _read_as_meant(text: str) -> Reading:
+    return read_as_meant(read_as_ros(text.encode(), "r.urdf"), Surroundings(Budget())).reading
 
 
 def many_misspelt(count: int) -> str:
@@ -16,13 +23,15 @@ def many_misspelt(count: int) -> str:
     joints = "".join(
         JOINT.format(number, wrong[number % 2], f"arm_{number}") for number in range(count)
     )
+    links += '<link name="head"/>'
+    joints += JOINT.format("head", "torso", "head")
     return f'<robot name="r"><link name="torso"/>{links}{joints}</robot>'
 
 
 @pytest.mark.parametrize(("count", "is_meant"), [(3, True), (250, False)])
 def test_a_name_is_undone_in_few_places(count: int, *, is_meant: bool) -> None:
     """A name that is wrong in more places than a person corrects is left as it is."""
-    assert read_urdf(many_misspelt(count).encode(), "r.urdf").is_meant == is_meant
+    assert _read_as_meant(many_misspelt(count)).is_meant == is_meant
 
 
 def test_ends_without_a_link_are_not_exchanged() -> None:
@@ -31,7 +40,6 @@ def test_ends_without_a_link_are_not_exchanged() -> None:
         JOINT.format(1, "base", "arm")
         + '<joint name="j2" type="fixed"><parent/><child link="arm"/></joint>'
     )
-    reading = read_urdf(
-        f'<robot name="r"><link name="base"/><link name="arm"/>{joints}</robot>'.encode(), "r.urdf"
-    )
+    links = '<link name="base"/><link name="arm"/>'
+    reading = _read_as_meant(f'<robot name="r">{links}{joints}</robot>')
     assert (reading.verdict, reading.is_meant) == ("rejected", False)

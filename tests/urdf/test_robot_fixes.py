@@ -77,13 +77,6 @@ def test_what_may_be_several_things_has_no_fix() -> None:
     assert _fixes(_PATH, text) == {}
 
 
-def test_a_word_of_a_broken_tag_is_written_with_the_tag() -> None:
-    """What is no XML in the tag, in another line, is written anew with it."""
-    text = _PLAIN.replace('type="fixed"', '\n    type="fixd"\n    x=1\n  ')
-    [edits] = _fixes(_PATH, text)
-    assert 'type="fixed" x="1">' in (edited(text, _PATH, edits) or "")
-
-
 def test_a_word_of_a_broken_file_has_a_fix() -> None:
     """Of a whole tag, where another one is broken."""
     text = _PLAIN.replace("</visual></link>", "</link>", 1).replace('type="fixed"', 'type="fixd"')

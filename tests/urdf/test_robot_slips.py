@@ -74,11 +74,14 @@ def test_materials() -> None:
         assert [slip.assumption for slip in read_as_ros(data, "r.urdf.xacro").slips] == expected
 
 
-def test_of_a_rejected_file_only_what_is_dropped() -> None:
-    """Words for which ROS 2 rejects a file are no slips of their own; what cannot be read hides no others."""
+def test_of_a_rejected_file() -> None:
+    """What cannot be read hides no other words."""
     box = _shown('<box size="1, 2, 3"/>')
     for joint, expected in (
-        (_JOINT.replace("<child link", "<chidl link"), ["size is read as '1 2 3'"]),
+        (
+            _JOINT.replace("<child link", "<chidl link"),
+            ["size is read as '1 2 3'", "<chidl> is read as <child>"],
+        ),
         (_JOINT.replace('"b"/></joint>', '"zzzz"/></joint>'), ["size is read as '1 2 3'"]),
     ):
         text = f'<robot name="r"><link name="a">{box}</link>{joint}</robot>'

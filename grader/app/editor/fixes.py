@@ -20,7 +20,7 @@ def actions(look: Look, place: TextPlace, wanted: lsp.Range) -> list[lsp.CodeAct
     offered = []
     for title, at, edits in _offered(look, place.path):
         # Where it is wrong, and where it is written.
-        places = [at, *(Location(edit.path, edit.line, edit.column) for edit in edits)]
+        places = [at, *(edit.location for edit in edits)]
         inside = [ranges.range(where) for where in places if where.path == place.path]
         if any(_overlap(each, wanted) for each in inside):
             change = ranges.workspace_edit(edits)

@@ -1,6 +1,9 @@
 """The check of whether ROS 2 loads the URDF."""
 
+from collections.abc import Iterable
+
 from grader.base.problems import Problem, kinds_in
+from grader.base.source import Location
 from grader.base.text import counted, enumerated, sentence_end
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed, pending
@@ -57,16 +60,22 @@ def _list_assumed(urdf: Reading) -> str:
 
     It is empty if nothing is.
     """
-    lines: dict[str, list[str]] = {}
+    assumed = []
     for problem in urdf.problems:
         if problem.kind is xml_problems.RECOVERED and not problem.subject:
-            lines.setdefault(problem.message, []).append(str(problem.location.line))
+            assumed.append((problem.message, problem.location))
+    return list_with_lines(assumed)
+
+
+def list_with_lines(assumed: Iterable[tuple[str, Location]]) -> str:
+    """Return sentences on places as one text, each sentence once and with its lines."""
+    lines: dict[str, dict[str, None]] = {}
+    for sentence, at in assumed:
+        lines.setdefault(sentence, {})[str(at.line)] = None
     texts = []
-    for message, assuming in lines.items():
-        at = [*dict.fromkeys(assuming)]
-        texts.append(
-            f"{message} ({'line' if len(at) == 1 else 'lines'} {enumerated(at, _MAX_ASSUMED)})"
-        )
+    for sentence, numbers in lines.items():
+        word = "line" if len(numbers) == 1 else "lines"
+        texts.append(f"{sentence} ({word} {enumerated([*numbers], _MAX_ASSUMED)})")
     return enumerated(texts, _MAX_ASSUMED)
 
 

@@ -23,6 +23,7 @@ from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.submission import Submission
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Read
+from grader.ros.python.budget import Budget
 from grader.ros.urdf.kinematics import Configuration
 
 if TYPE_CHECKING:
@@ -70,6 +71,11 @@ def grade(
             from grader.lab.grading.slips import judge_as_meant  # late: many submissions have none
 
             results, meant = judge_as_meant(rubric, submission, slips, results)
+    robot_owner = submission if meant is None else meant.submission
+    if any(result.is_lost for result in results):
+        from grader.lab.grading.not_known import judge_known  # late: few elements are dropped
+
+        results = judge_known(rubric, robot_owner, results, wanted)
     results = without_gifts(results, submission)
     problems = _find_problems(rubric, submission, chosen, meant)
     evidence, other_pictures = _find_evidence(rubric, submission, chosen if is_whole else ())
@@ -77,7 +83,6 @@ def grade(
     notes.append(_note_on_hidden_base(rubric, submission))
     by_convention: frozenset[str] = frozenset()
     if is_explained:
-        robot_owner = submission if meant is None else meant.submission
         note, by_convention = _explain_by_convention(rubric, robot_owner, results)
         notes.append(note)
     if (
@@ -114,9 +119,11 @@ def _list_slips(submission: Submission) -> list[Slip]:
     slips: list[Slip] = []
     if isinstance(submission.urdf, Read):
         # Late: robots that are right have none.
-        from grader.lab.submission.robot_readings import proven_slips
+        from grader.ros.package.robot_readings import RobotReadings
 
-        slips = [*submission.urdf.slips, *proven_slips(submission)]
+        around = submission.renewed().surroundings(Budget())
+        readings = RobotReadings(submission.urdf, around)
+        slips = [*readings.find_slips(), *submission.urdf.slips]
     packages = [submission.package, *submission.lab_packages.values()]
     for package in dict.fromkeys(filter(None, packages)):
         from grader.ros.nodes.python.package_slips import (

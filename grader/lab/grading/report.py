@@ -235,7 +235,7 @@ class Report(NamedTuple):
     @property
     def score(self) -> Decimal:
         """The points earned so far, without those that need manual grading."""
-        return _sum_points(result.points for result in self.results)
+        return sum_points(result.points for result in self.results)
 
     @property
     def counting(self) -> Decimal | None:
@@ -297,17 +297,17 @@ class Report(NamedTuple):
     @property
     def max_score(self) -> Decimal:
         """The maximum of the graded parts, without extra credit."""
-        return _sum_points(result.criterion.maximum for result in self.results)
+        return sum_points(result.criterion.maximum for result in self.results)
 
     @property
     def pending(self) -> Decimal:
         """The points that still need manual grading."""
-        return _sum_points(result.criterion.points for result in self.results if result.is_open)
+        return sum_points(result.criterion.points for result in self.results if result.is_open)
 
     @property
     def bonus(self) -> Decimal:
         """The points of extra credit that were earned: they are part of the score."""
-        return _sum_points(result.points for result in self.results if result.criterion.bonus)
+        return sum_points(result.points for result in self.results if result.criterion.bonus)
 
     @property
     def fault(self) -> str:
@@ -333,5 +333,6 @@ def without_gifts(results: Iterable[Result], submission: Submission) -> tuple[Re
     )
 
 
-def _sum_points(points: Iterable[Decimal]) -> Decimal:
+def sum_points(points: Iterable[Decimal]) -> Decimal:
+    """Return the sum of points."""
     return sum(points, _NOTHING)

@@ -7,12 +7,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from grader.base.problems import Problem
 from grader.base.slips import Slip
+from grader.base.source import Location
 from grader.base.text import enumerated, sentence_end
-from grader.lab.checks.loading import urdf_loads
+from grader.lab.checks.loading import list_with_lines, urdf_loads
 from grader.lab.checks.outcome import SLIP, Outcome
 from grader.lab.checks.xacro_source import xacro_uses
 from grader.lab.grading.deciding import decide
-from grader.lab.grading.report import Meant, PaidSlip, Result
+from grader.lab.grading.report import Meant, PaidSlip, Result, sum_points
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.edited import edited_files, with_files, with_urdf
 from grader.lab.submission.submission import Submission
@@ -74,6 +75,11 @@ class _Readings:
                 results.append(self._written[name])
             else:
                 results.append(result)
+        # What is refused may pass where nothing of it is read: the marks are never lower for that.
+        before = sum_points(result.points for result in self._written.values())
+        is_lower = sum_points(result.points for result in results) < before
+        if is_lower and _is_of_robot(counting):
+            return tuple(self._written.values()), None
         paid = tuple(PaidSlip(slip, payer) for slip, payer in payers.items())
         return tuple(results), Meant(submission, tuple(meant.values()), paid)
 
@@ -125,6 +131,8 @@ class _Readings:
                     continue
             if (result.is_lost or result.is_open) and _is_changed(result, meant):
                 changed.append(result)
+        if not (slip.is_refused or changed):
+            return None
         return self._choose_payer(before_submission, after_submission, before, changed)
 
     def _choose_payer(
@@ -166,21 +174,28 @@ class _Readings:
             if not (outcome.problem or first.is_refused):
                 failure = failure._replace(message=f"{message}: {outcome.message}")
         text = f"{sentence_end(failure.message)} {_correction_text(paid)}"
-        if meant.is_lost and meant.outcome.status == "failed":
-            text += f". Even so, {meant.outcome.message}"
+        left = meant.outcome
+        is_another = (left.problem or left.message) != failure.problem
+        if meant.is_lost and left.status == "failed" and is_another:
+            text += f". Even so, {left.message}"
         return Result(written.criterion, failure._replace(message=text, cause=SLIP))
 
 
 def _correction_text(slips: Iterable[Slip]) -> str:
-    assumed = [f"{slip.assumption} (line {slip.location.line})" for slip in slips]
-    each_once = [*dict.fromkeys(assumed)]
-    return f"The rest is graded with this correction: {enumerated(each_once, _MAX_NAMED)}"
+    places: list[tuple[str, Location]] = []
+    for slip in slips:
+        path = slip.location.path
+        changed = [edit.location for edit in slip.edits if edit.old and edit.path == path]
+        places += [(slip.assumption, at) for at in changed or [slip.location]]
+    assumed = list_with_lines(places)
+    return f"The rest is graded with this correction: {assumed}"
 
 
 def problems_as_meant(problems: Iterable[Problem], meant: Meant) -> Iterator[Problem]:
     """Yield the problems of a URDF that are left with the words that are meant.
 
-    Also yield those at these words, and what is assumed about each.
+    Also yield those at these words or for which ROS 2 rejects the file, and what is assumed about
+    each.
     """
     urdf = meant.submission.urdf
     problems_left = urdf.problems if isinstance(urdf, Read) else ()
@@ -188,26 +203,33 @@ def problems_as_meant(problems: Iterable[Problem], meant: Meant) -> Iterator[Pro
     lines = {paid.slip.location.file_and_line for paid in meant.paid}
     for problem in problems:
         at = problem.location
-        if at.file_and_line in lines or (problem.kind, at.line) in left:
+        is_left = at.file_and_line in lines or (problem.kind, at.line) in left
+        is_cause = problem.kind.effect == "rejects" and not problem.kind.is_consequence
+        if is_left or is_cause:
             yield problem
     for paid in meant.paid:
         yield Problem(xml_problems.RECOVERED, paid.slip.assumption, paid.slip.location)
 
 
-def _corrected(submission: Submission, slips: Iterable[Slip]) -> Submission:
+def _corrected(submission: Submission, slips: Sequence[Slip]) -> Submission:
     """Return a submission with the words that are meant."""
     files = edited_files(submission, [edit for slip in slips for edit in slip.edits])
     assert files is not None
     urdf = submission.urdf
-    is_of_robot = all(path.endswith((".urdf", ".xacro")) for path in files)
     # A launch file that runs xacro fails if xacro writes a warning.
     if (
         isinstance(urdf, Read)
-        and is_of_robot
+        and _is_of_robot(slips)
         and (submission.package is None or not urdf.is_expanded)
     ):
         return with_urdf(submission, files)
     return with_files(submission, files)
+
+
+def _is_of_robot(slips: Iterable[Slip]) -> bool:
+    """Return whether slips are in files of the robot alone."""
+    paths = [edit.path for slip in slips for edit in slip.edits]
+    return all(path.endswith((".urdf", ".xacro")) for path in paths)
 
 
 def _is_changed(before: Result, after: Result) -> bool:

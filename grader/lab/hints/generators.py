@@ -15,7 +15,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from grader.base.source import Edit, Edits
-from grader.base.text import enumerated, in_backticks, quoted, texts_in
+from grader.base.text import enumerated, in_backticks, texts_in
 from grader.lab.hints.edits import MAX_IN_HINT, FoundHint, Proposal
 from grader.lab.hints.robot_difference import MissingPart, Piece, RobotDifference
 from grader.lab.hints.robot_draft import Draft
@@ -33,7 +33,6 @@ from grader.lab.rubric.criterion import Criterion
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.meant import Word
 from grader.ros.urdf.reader import Reading
 from grader.ros.xml.urdf_format import JOINT_TYPES
 
@@ -260,22 +259,15 @@ def _list_links(criteria: Iterable[Criterion], difference: RobotDifference) -> l
 
 
 def _repairs(reading: Reading) -> Iterator[Proposal]:
-    """Yield the edits of the tags and of the words for which ROS 2 or xacro rejects a file."""
-    if reading.verdict == "rejected" and not reading.undone:
-        from grader.ros.xml.repair import repair  # late: its patterns take long
+    """Yield the edits of the tags for which ROS 2 or xacro rejects a file."""
+    if reading.verdict != "rejected":
+        return
+    from grader.ros.xml.repair import repair  # late: its patterns take long
 
-        repaired = repair(reading.source.text)
-        if not repaired.is_lossy:
-            edits = tuple(reading.source.edit(*change) for change in repaired.changes)
-            yield Proposal(edits, _syntax_in_words(edits))
-    if reading.undone:
-        edits_of_words: list[Edit] = []
-        for word in reading.undone:
-            for fix in word.fixes:
-                edits_of_words += fix.edits
-        written = dict.fromkeys(map(_word_in_words, reading.undone))
-        cause = enumerated(written, MAX_IN_HINT)
-        yield Proposal(tuple(edits_of_words), cause)
+    repaired = repair(reading.source.text)
+    if not repaired.is_lossy:
+        edits = tuple(reading.source.edit(*change) for change in repaired.changes)
+        yield Proposal(edits, _syntax_in_words(edits))
 
 
 def _syntax_in_words(edits: Edits) -> str:
@@ -289,16 +281,6 @@ def _syntax_in_words(edits: Edits) -> str:
     if tags:
         return f"the syntax of {enumerated([f'<{tag}>' for tag in tags], MAX_IN_HINT)}"
     return f"the syntax of {in_backticks(texts)}"
-
-
-def _word_in_words(word: Word) -> str:
-    """Return a word as it is written, with what it is."""
-    element, attribute = word.element, word.attribute
-    if attribute is None:
-        return f"the tag <{element.tag}>"
-    if attribute in word.attributes:
-        return f"{attribute}={quoted(str(element.attrib[attribute]))} of <{element.tag}>"
-    return f"the attribute {attribute} of <{element.tag}>"
 
 
 def _with_xacro(submission: Submission) -> Iterator[Proposal]:

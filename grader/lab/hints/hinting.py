@@ -234,7 +234,7 @@ def _hint(hint: FoundHint, text: str, shown_by: str, result: Result, *, keeps_ed
         # A line that is missing has no place of its own.
         is_line = "\n" in first.new and not first.old and not first.path.endswith(ROBOT_ENDINGS)
         if not (is_line and where is not None and where.path == first.path):
-            at = Location(first.path, first.line, first.column)
+            at = first.location
     shown = (hint.edits, hint.proposal.cause) if keeps_edits else ((), "")
     return Hint(text, at, hint.gains, *shown, shown_by, hint.certainty)
 

@@ -317,10 +317,6 @@ def _undefined_names(file: PythonFile, what: str) -> Proposals:
 
     The names are undefined, or not as they are used.
     """
-    if file.fault is not None:
-        start = file.source.offset(file.fault.location.line, 1)
-        end = start + len(file.text[start:].partition("\n")[0].rstrip())
-        yield change([file.source.edit(end, end, ",")], "a missing comma", what)
     undefined = sorted(file.undefined)
     imported = in_backticks(name for name in undefined if name in USUAL_NAMES)
     yield change(file.with_imports(sorted(file.used)), f"the import of {imported}", what)

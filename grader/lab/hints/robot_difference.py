@@ -164,25 +164,11 @@ class RobotDifference:
                     yield self.piece(element, cause, edits, rank=SIBLING)
 
     def _materials(self) -> Pieces:
-        """Name a material as links use it, or give a link the reference's colour.
-
-        It does the latter for what a link shows if no material has the colour.
-        """
+        """Give what links show the reference's colours, if no material has them."""
         own_materials = {
             material.get("name", ""): material
             for material in self.draft.root.iterchildren("material")
         }
-        uses = Counter(
-            material.get("name", "") for material in self.draft.root.iterfind("link//material")
-        )
-        undefined = [
-            name for name, count in uses.items() if count > 1 and name not in own_materials
-        ]
-        for name in sorted(own_materials.keys() - uses.keys()):
-            meant = near(name, undefined, "material")
-            if meant is not None:
-                sets = (Set(own_materials[name], "", "name", meant),)
-                yield self.piece(own_materials[name], "the name of {}", sets=sets)
         for used in self.draft.root.iter("material"):
             yield from self._material(used, own_materials)
 

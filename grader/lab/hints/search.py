@@ -68,8 +68,6 @@ class Trials:
         self._is_of_reference = dict[str, bool]()  # by path
         self.left = _MAX_GRADINGS
         self.faults: list[str] = []  # the types of exceptions
-        # whether the last one is read with words undone, and the submission is not
-        self.is_assumed = False
 
     @contextmanager
     def isolated(self) -> Iterator[None]:
@@ -102,7 +100,6 @@ class Trials:
             return {}
         if _has_new_build_errors(self.submission, edited):
             return {}
-        self.is_assumed = _is_assumed(edited) and not _is_assumed(self.submission)
         results: dict[str, Result] = {}
         for result in decide(self.rubric, edited, wanted):
             name = result.criterion.id
@@ -218,15 +215,6 @@ def _repeated(urdf: Read) -> set[tuple[str, str]]:
     return {key for key, count in names.items() if count > 1}
 
 
-def _is_assumed(submission: Submission) -> bool:
-    """Return whether ROS 2 rejects the URDF, and it is read with words undone.
-
-    Criteria may pass by them.
-    """
-    reading = submission.urdf.loaded if isinstance(submission.urdf, Read) else None
-    return reading is not None and reading.verdict == "rejected" and reading.is_meant
-
-
 def _is_of_robot(path: str, submission: Submission) -> bool:
     """Return whether a file is the URDF or one that its xacro reads.
 
@@ -313,7 +301,6 @@ class _Tried(NamedTuple):
 
     proposal: Proposal
     passes: frozenset[str]  # the criteria that pass with it, and did not before
-    is_assumed: bool  # they may pass by what is undone, and not by the edit: others come first
 
 
 class _Proof(NamedTuple):
@@ -505,7 +492,7 @@ class HintSearch:
                         return
                     passes = self._passes_with(proposal, lost)
                     if passes:
-                        tried.append(_Tried(proposal, passes, self.trials.is_assumed))
+                        tried.append(_Tried(proposal, passes))
 
     def _is_in_reference(self, proposal: Proposal) -> bool:
         """Return whether a proposal edits a file that is the same in the reference."""
@@ -528,9 +515,9 @@ class HintSearch:
         )
         return min(left, key=lambda trial: self._order(trial, lost), default=None)
 
-    def _order(self, one: _Tried, lost: Collection[str]) -> tuple[bool, Decimal, int, int, int]:
+    def _order(self, one: _Tried, lost: Collection[str]) -> tuple[Decimal, int, int, int]:
         gain = sum((self._criteria[name].points for name in one.passes if name in lost), Decimal(0))
-        return one.is_assumed, -gain, one.proposal.rank, one.proposal.way, one.proposal.size
+        return -gain, one.proposal.rank, one.proposal.way, one.proposal.size
 
     def _prove(self, best: _Tried, tried: Iterable[_Tried]) -> bool:
         """Add the hint of a proposal if it is proven, and return whether it was added."""

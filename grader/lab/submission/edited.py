@@ -5,13 +5,15 @@ It has the changed texts of its files, and the submission read again with them.
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 
-from grader.base.element_edits import edited
+from grader.base.element_edits import edit_files
 from grader.base.source import Edit
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import overlaid
 from grader.lab.submission.submission import Submission
-from grader.ros.package.robot_file import Read, read_as_ros
+from grader.ros.package.robot_file import Read
+from grader.ros.package.robot_readings import read_edited
 from grader.ros.python.budget import Budget
 
 _Files = Mapping[
@@ -21,21 +23,7 @@ _Files = Mapping[
 
 def edited_files(submission: Submission, edits: Iterable[Edit]) -> _Files | None:
     """Return the files of a submission that edits change; None where the edits do not fit."""
-    by_path: dict[str, list[Edit]] = {}
-    for edit in edits:
-        by_path.setdefault(edit.path, []).append(edit)
-    files: dict[str, bytes | None] = {}
-    for path, of_file in by_path.items():
-        before = content(submission, path)
-        text = (before or b"").decode("utf-8", "surrogateescape")
-        renamed = next((edit.renamed for edit in of_file if edit.renamed), "")
-        after = edited(text, path, [edit for edit in of_file if not edit.renamed])
-        if after is None:
-            return None
-        if renamed:
-            files[path] = None
-        files[renamed or path] = after.encode("utf-8", "surrogateescape")
-    return files
+    return edit_files(partial(content, submission), edits)
 
 
 def content(submission: Submission, path: str) -> bytes | None:
@@ -53,15 +41,10 @@ def with_urdf(submission: Submission, files: _Files) -> Submission:
     submission = submission.renewed()
     urdf = submission.urdf
     assert isinstance(urdf, Read)
-    is_renamed = files.get(urdf.path, b"") is None
-    path = next((new for new, data in files.items() if data is not None and is_renamed), urdf.path)
-    if submission.whole_tree.files:
-        whole_tree = overlaid(submission.whole_tree, files)
-    else:
-        whole_tree = submission.whole_tree
-    surroundings = submission.surroundings(Budget(), whole_tree)
-    read = read_as_ros(files.get(path) or urdf.data, path, surroundings)
-    return replace(submission, urdf=read, whole_tree=whole_tree, budget=surroundings.budget)
+    read = read_edited(urdf, submission.surroundings(Budget()), files)
+    tree = submission.whole_tree
+    whole_tree = overlaid(tree, files) if tree.files else tree
+    return replace(submission, urdf=read, whole_tree=whole_tree, budget=Budget())
 
 
 def with_files(submission: Submission, files: _Files) -> Submission:

@@ -7,12 +7,11 @@ import posixpath
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.base.errors import InputError, MissingElement, NotDecided
-from grader.base.problems import Problem, causes, in_order
+from grader.base.problems import Problem
 from grader.base.reuse import Answers, Memory
 from grader.base.slips import Slip
 from grader.base.source import Edits, Source
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from grader.ros.launch.launch_model import NamedFile
     from grader.ros.package.robot_comparison import RobotState
     from grader.ros.slips.choices import Choice
+    from grader.ros.xacro.corrections import Refusal
     from grader.ros.xacro.expansion import ExpandedSource
     from grader.ros.xacro.texts import OtherArguments
     from grader.ros.xacro.xacro_files import SurroundingFiles
@@ -127,10 +127,13 @@ class Read(NamedTuple):
         from grader.ros.slips.choices import list_choices  # late: as above
 
         texts = {self.path: Source(self.path, text)}
+        refused: Sequence[Refusal] = ()
         if self.reading.source.is_expanded:
-            for source in cast("ExpandedSource", self.reading.source).texts_of_files:
+            expanded = cast("ExpandedSource", self.reading.source)
+            refused = expanded.refused
+            for source in expanded.texts_of_files:
                 texts.setdefault(source.path, source)
-        return list_choices([*texts.values()])
+        return list_choices([*texts.values()], refused, self.reading.fixes)
 
     @property
     def slips(self) -> list[Slip]:
@@ -141,13 +144,11 @@ class Read(NamedTuple):
 
             slips += xacro_slips(cast("ExpandedSource", self.reading.source))
         kinds = {problem.kind for problem in self.reading.problems}
-        if self.reading.elements is not None and not OF_SLIPS.isdisjoint(kinds):
+        reading = self.reading
+        if reading.elements is not None and not OF_SLIPS.isdisjoint(kinds):
             from grader.ros.urdf.robot_slips import RobotSlips  # late: most files have none
 
-            undone = {word.element for word in self.reading.undone}
-            search = RobotSlips(
-                self.reading.elements, self.reading.source, self.reading.unresolved, undone
-            )
+            search = RobotSlips(reading.elements, reading.source, reading.unresolved)
             slips += search.listed()
         return slips
 
@@ -489,26 +490,14 @@ def _read_expanded(
     """Return the robot that xacro makes of a file with these arguments, as `_expand_xacro` does."""
     from grader.ros.xacro.expansion import expand  # late: as above
 
-    read = partial(expand, data, path, files, dict(arguments), others)
-    expansion = read()
+    expansion = expand(data, path, files, dict(arguments), others)
     if expansion.root is None and expansion.recovered is None and expansion.problems:
         raw = read_robot(read_document(data, path), newest)
         problems = [
             problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)
         ]
         return Reading("rejected", raw.robot, (*expansion.problems, *problems), raw.source)
-    reading = _read_document(expansion.document, newest)
-    if reading.verdict == "rejected" and expansion.meant is None and expansion.source.is_expanded:
-        unmarked = cast("ExpandedSource", expansion.source).unmarked
-        changed = read(unmarked) if unmarked else expansion
-        if changed.meant is not None:
-            after = read_robot(changed.meant.document, newest)
-            expansion = expansion if after.verdict == "rejected" else changed
-    if expansion.meant is None:
-        return reading
-    meant = _read_document(expansion.meant.document, newest)
-    distinct = dict.fromkeys([*causes(reading.problems), *expansion.assumed, *meant.problems])
-    return meant._replace(verdict="rejected", problems=in_order(distinct))
+    return _read_document(expansion.document, newest)
 
 
 def _read_document(document: XmlDocument, newest: UrdfVersion) -> Reading:

@@ -1,67 +1,175 @@
 """The ways to read what is written in the files of a robot.
 
-Each choice is one slip, with all that it may stand for.
+Each choice is one place with all that it may stand for: a way that is missing would make a false
+certainty. Which one is meant is decided by reading the robot again.
 """
 
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 
+from grader.base import markup
+from grader.base.problems import Fix
 from grader.base.slips import Slip
-from grader.base.source import Source
+from grader.base.source import Location, Source
+from grader.base.text import in_backticks
 from grader.ros.slips.element_forms import element_slips
-from grader.ros.slips.loose_text import early_end_slips, loose_tag_slips
+from grader.ros.slips.loose_text import (
+    early_end_slips,
+    loose_tag_slips,
+    nested_robot_slips,
+    open_comment_slips,
+)
+from grader.ros.slips.macro_calls import copied_call_choices, parameter_slips
 from grader.ros.slips.macro_ends import macro_end_slips
 from grader.ros.slips.nodes import read_elements
-from grader.ros.slips.roots import root_slips
+from grader.ros.slips.roots import prefix_slips, root_slips, rootless_slips
 from grader.ros.slips.sdf_words import gazebo_slips
-from grader.ros.slips.xacro_syntax import expression_slips, list_names
+from grader.ros.slips.xacro_names import (
+    command_slips,
+    commented_slips,
+    foreign_name_slips,
+    name_in_braces_slips,
+)
+from grader.ros.slips.xacro_syntax import (
+    decimal_comma_slips,
+    expression_slips,
+    list_names,
+    refused_expression_slips,
+    unmarked_slips,
+)
 from grader.ros.slips.xacro_words import (
     attribute_slips,
     child_slips,
     list_macros,
     nameless_slips,
 )
+from grader.ros.xacro.corrections import Refusal, respellings
+from grader.ros.xacro.macros import MacroError
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
+_XACRO = re.compile(r"xacro:|\$")
 Choice = tuple[Slip, ...]  # what one slip may stand for
 
 
-def list_choices(sources: Sequence[Source]) -> Iterator[Choice]:
-    """Yield the slips in the texts of a robot, the first of which is the file that is loaded."""
-    roots: list[tuple[Source, XacroNode]] = []
-    for source in sources:
+def list_choices(
+    sources: Sequence[Source], refused: Sequence[Refusal] = (), fixes: Iterable[Fix] = ()
+) -> Iterator[Choice]:
+    """Yield the slips in the texts of a robot, the first of which is the file that is loaded.
+
+    `refused` is what xacro refuses, and `fixes` are those of words for which ROS 2 rejects the
+    robot. What hides other slips comes first: a text that is not read, a name that is not defined.
+    """
+    roots: list[XacroNode] = []
+    for index, source in enumerate(sources):
         yield from _choices_of_text(source)
+        if index:
+            yield from _alone(rootless_slips(source))
         root = read_elements(source)
         if root is not None:
-            roots.append((source, root))
-    names = {"pi"}  # and those of properties and parameters
-    macros: dict[str, list[str]] = {}  # their parameters
+            roots.append(root)
+    of_xacro = [root for root in roots if _XACRO.search(root.place.source.text)]
+    names, macros = _list_defined(of_xacro)
+    if of_xacro:
+        nodes = [*chain.from_iterable(map(walk, of_xacro))]
+        yield from _choices_of_xacro(sources, nodes, names, refused)
+    for fix in fixes:
+        yield (_slip_of_fix("ROS 2 rejects the file for", fix, fix.edits[0].location),)
     named: set[str] = set()  # among them the links, which a macro may make
-    has_gazebo = any("<gazebo" in source.text for source, _ in roots)
-    for source, root in roots:
-        if "xacro:" in source.text:
-            names |= list_names(root)
-            macros |= list_macros(root)
-        if has_gazebo:
-            named |= {node.attributes.get("name", "") for node in walk(root)}
-    for source, root in roots:
+    has_gazebo = any("<gazebo" in source.text for source in sources)
+    if has_gazebo:
+        named = {node.attributes.get("name", "") for node in chain.from_iterable(map(walk, roots))}
+    for root in roots:
         yield from _alone(element_slips(root))
         if has_gazebo:
             yield from _alone(gazebo_slips(root, named))
-        if "xacro:" in source.text:
-            yield from _alone(attribute_slips(root))
-            yield from _alone(nameless_slips(source, macros))
-            yield from _alone(child_slips(root, macros))
-        if "$" in source.text or "{" in source.text or "xacro:" in source.text:
-            yield from expression_slips(root, names)
+        yield from _choices_of_values(root, names, macros)
+
+
+def _list_defined(of_xacro: Iterable[XacroNode]) -> tuple[set[str], dict[str, list[str]]]:
+    """Return the names of properties and parameters, and the macros with their parameters."""
+    names = {"pi"}
+    macros: dict[str, list[str]] = {}
+    for root in of_xacro:
+        names |= list_names(root)
+        macros |= list_macros(root)
+    return names, macros
 
 
 def _choices_of_text(source: Source) -> Iterator[Choice]:
     """Yield the slips by which a text is no tree of elements, or another one."""
+    yield from _alone(prefix_slips(source))
+    yield from _alone(open_comment_slips(source))
     yield from _alone(root_slips(source))
+    yield from _alone(nested_robot_slips(source))
     yield from _alone(early_end_slips(source))
     yield from _alone(loose_tag_slips(source))
-    if "<xacro:macro" in source.text:
-        yield macro_end_slips(source)
+    ends = macro_end_slips(source) if "<xacro:macro" in source.text else ()
+    if ends:
+        yield ends
+
+
+def _choices_of_xacro(
+    sources: Sequence[Source],
+    nodes: Sequence[XacroNode],
+    names: set[str],
+    refused: Sequence[Refusal],
+) -> Iterator[Choice]:
+    """Yield the slips in names of xacro, and those for which it refuses something."""
+    yield from _alone(name_in_braces_slips(nodes))
+    yield from _alone(command_slips(nodes))
+    yield from _alone(unmarked_slips(nodes, names))
+    known = {""}  # the names and macros whose other ways were listed
+    for refusal in refused:
+        error, place = refusal.error, refusal.place
+        name = ""
+        if isinstance(error, MacroError):
+            source, start = place.written
+            name = source.text[start + 1 : markup.name_end(source.text, start)]
+        elif refusal.unknown is not None:
+            name = refusal.unknown.name
+        ways = [*refused_expression_slips(*place.written, refusal.attribute, name)]
+        if not ways:
+            ways += _slips_of_refusal(refusal)
+        if name not in known:
+            ways += parameter_slips(nodes, name.rpartition(":")[2])
+            ways += foreign_name_slips(nodes, names)
+            ways += commented_slips(sources, name)
+        known.add(name)
+        if ways:
+            yield tuple(ways)
+    yield from _alone(decimal_comma_slips(nodes))
+    yield from copied_call_choices(nodes)
+
+
+def _slips_of_refusal(refusal: Refusal) -> Iterator[Slip]:
+    """Yield the correction of what xacro refuses, or the near names of one that is not known."""
+    unknown = refusal.unknown
+    if refusal.correction is not None:
+        fix, at, _ = refusal.correction
+        yield _slip_of_fix("xacro refuses", fix, at)
+    elif unknown is not None:
+        for edits, assumption in respellings(refusal, unknown, unknown.meant):
+            yield _slip_of_fix("xacro refuses", Fix(edits, assumption), edits[0].location)
+
+
+def _choices_of_values(
+    root: XacroNode, names: set[str], macros: dict[str, list[str]]
+) -> Iterator[Choice]:
+    """Yield the slips in attributes and expressions of xacro."""
+    text = root.place.source.text
+    if "xacro:" in text:
+        yield from _alone(attribute_slips(root))
+        yield from _alone(nameless_slips(root.place.source, macros))
+        yield from _alone(child_slips(root, macros))
+    if "$" in text or "{" in text or "xacro:" in text:
+        yield from expression_slips(root, names)
+
+
+def _slip_of_fix(verb: str, fix: Fix, at: Location) -> Slip:
+    """Return the slip that the fix of what is refused corrects."""
+    texts = in_backticks(edit.old for edit in fix.edits)
+    return Slip(fix.edits, f"{verb} {texts or 'this'}", fix.assumption, at, is_refused=True)
 
 
 def _alone(slips: Iterator[Slip]) -> Iterator[Choice]:

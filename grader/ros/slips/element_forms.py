@@ -8,10 +8,11 @@ from grader.base.element_edits import (
     attributes_text,
     empty_element,
     renamed_tag,
+    with_attribute,
     without_element,
 )
 from grader.base.markup import WORD_OF_VALUE
-from grader.base.slips import Slip
+from grader.base.slips import Slip, make_slip
 from grader.base.source import Edits, Source
 from grader.base.text import cut, quoted
 from grader.ros.slips.nodes import find_place
@@ -42,6 +43,7 @@ _NO_SHAPES = (
 )
 # Elements that belong under <robot>, whatever tool reads them.
 _OF_ROBOT = ("gazebo", "transmission", "ros2_control")
+_OF_OTHERS = ("gazebo", "transmission")  # in which other elements have the names of a URDF's
 _REPEATED = ("visual", "collision", *_OF_ROBOT, *CHILDREN["robot"])
 _XACRO = ("xacro:macro", "xacro:if", "xacro:unless")
 
@@ -54,15 +56,19 @@ def element_slips(root: XacroNode) -> Iterator[Slip]:
         parent = around[-1].tag if around else ""
         if node.tag not in _OF_ROBOT or around[1:]:
             yield from _find_slips(node, around, parent)
-        if node.tag not in _OF_ROBOT:
+        if node.tag not in _OF_OTHERS:
             waiting += [(child, (*around, node)) for child in reversed(node.elements)]
 
 
 def _find_slips(node: XacroNode, around: tuple[XacroNode, ...], parent: str) -> Iterator[Slip]:
     if node.tag in TAGS:
         yield from _with_attributes_inside(node)
+    if node.tag == "origin" and {*node.attributes} == {"xyz"}:
+        yield from _pose_in_one_attribute(node)
     if parent == "geometry" and node.tag not in TAGS:
         yield from _named_otherwise(node)
+    if node.tag in TAGS or node.tag.startswith("xacro:"):
+        yield from _attributes_beside(node)
     if len(around) > 1:
         yield from _misplaced(node, around[-1], around[-2])
     if node.tag in CHILDREN["geometry"] and parent in ("visual", "collision"):
@@ -96,7 +102,7 @@ def _with_attributes_inside(node: XacroNode) -> Iterator[Slip]:
     names = " and ".join(values)
     reaction = f"ROS 2 reads no {names} of <{node.tag}> from what is inside of it"
     assumption = f"{shown} in <{node.tag}> is read as {attributes_text(values).strip()}"
-    yield Slip(edits, reaction, assumption, source.at(start))
+    yield make_slip(edits, reaction, assumption)
 
 
 def _as_empty_element(
@@ -127,6 +133,40 @@ def _values_of_text(tag: str, text: str, absent: list[str]) -> Mapping[str, str]
     if len(_main_attributes(tag)) == 1 and len(needed) == 1 and _fits(needed[0], text):
         return {needed[0]: " ".join(tokens)}
     return {}
+
+
+def _attributes_beside(parent: XacroNode) -> Iterator[Slip]:
+    """Yield the elements that are attributes of one beside them: <rpy> beside <origin>."""
+    for node in parent.elements:
+        name, value = node.tag, _read_value(node)
+        if name in TAGS or name not in PARTS or not _fits(name, value):
+            continue
+        owners = [
+            other
+            for other in parent.elements
+            if name in ATTRIBUTES.get(other.tag, ()) and name not in other.attributes
+        ]
+        if len(owners) != 1:
+            continue
+        given = " ".join(WORD_OF_VALUE.findall(value))
+        head = with_attribute(*find_place(owners[0]), name, given)
+        edits = (head, without_element(*find_place(node)))
+        reaction = f"ROS 2 ignores <{name}> in <{parent.tag}>"
+        assumption = f"<{name}> is read as an attribute of <{owners[0].tag}>"
+        yield Slip(edits, reaction, assumption, edits[1].location)
+
+
+def _pose_in_one_attribute(node: XacroNode) -> Iterator[Slip]:
+    """Yield the origin whose xyz has the numbers of rpy, too."""
+    tokens = WORD_OF_VALUE.findall(node.attributes["xyz"])
+    if len(tokens) == _POSE and all(map(_NUMBER.fullmatch, tokens)):
+        place = find_place(node)
+        edits = (
+            with_attribute(*place, "rpy", " ".join(tokens[3:])),
+            with_attribute(*place, "xyz", " ".join(tokens[:3])),
+        )
+        assumption = "the last three numbers of xyz are read as rpy"
+        yield make_slip(edits, "xyz of <origin> has six numbers", assumption)
 
 
 def _main_attributes(tag: str) -> tuple[str, ...]:
@@ -182,7 +222,7 @@ def _named_otherwise(node: XacroNode) -> Iterator[Slip]:
     source, start = find_place(node)
     reaction = f"ROS 2 ignores <{node.tag}> in <geometry>"
     assumption = f"<{node.tag}> is read as <{shape}>"
-    yield Slip(renamed_tag(source, start, shape), reaction, assumption, source.at(start))
+    yield make_slip(renamed_tag(source, start, shape), reaction, assumption)
 
 
 def _misplaced(node: XacroNode, parent: XacroNode, around: XacroNode) -> Iterator[Slip]:
@@ -196,7 +236,7 @@ def _misplaced(node: XacroNode, parent: XacroNode, around: XacroNode) -> Iterato
     if around.tag == "robot" or around.tag in _XACRO:
         is_right = tag in CHILDREN["robot"] or tag in _OF_ROBOT
     else:
-        is_right = tag in CHILDREN.get(around.tag, ())
+        is_right = tag in CHILDREN.get(around.tag, ()) or tag == parent.tag
     if not is_right or (tag in siblings and tag not in _REPEATED):
         return
     source, start = find_place(node)
@@ -204,11 +244,14 @@ def _misplaced(node: XacroNode, parent: XacroNode, around: XacroNode) -> Iterato
     end = markup.element_end(source.text, outer)
     indent = markup.indentation(source.text, outer)
     newline = "\r\n" if "\r\n" in source.text else "\n"
-    block = source.text[start : markup.element_end(source.text, start)]
+    last = markup.element_end(source.text, start)
+    block = source.text[start:last]
+    # Without the end of the line, which may be of what is inserted to close the parent.
+    removed = source.edit(start - len(markup.indentation(source.text, start)), last, "")
     moved = source.edit(end, end, f"{newline}{indent}{markup.indented(block, indent, newline)}")
     reaction = f"<{tag}> is inside of <{parent.tag}>, where nothing reads it"
     assumption = f"<{tag}> is read beside <{parent.tag}>"
-    yield Slip((without_element(source, start), moved), reaction, assumption, source.at(start))
+    yield Slip((removed, moved), reaction, assumption, source.at(start))
 
 
 def _without_geometry(node: XacroNode, parent: XacroNode) -> Iterator[Slip]:
@@ -223,7 +266,7 @@ def _without_geometry(node: XacroNode, parent: XacroNode) -> Iterator[Slip]:
     edit = source.edit(start, end, f"<geometry>{text}</geometry>")
     reaction = f"<{parent.tag}> has <{node.tag}> without <geometry>"
     assumption = f"<{node.tag}> is read inside of <geometry>"
-    yield Slip((edit,), reaction, assumption, source.at(start))
+    yield make_slip((edit,), reaction, assumption)
 
 
 def _ends_in_one_tag(joint: XacroNode) -> Iterator[Slip]:
@@ -247,7 +290,7 @@ def _ends_in_one_tag(joint: XacroNode) -> Iterator[Slip]:
         )
         reaction = f"<{node.tag}> has the parent and the child of a joint"
         assumption = f"the parent is read as {quoted(parent)} and the child as {quoted(child)}"
-        yield Slip((source.edit(start, end, new),), reaction, assumption, source.at(start))
+        yield make_slip((source.edit(start, end, new),), reaction, assumption)
     if {"parent", "child"} <= joint.attributes.keys() and not present & {"parent", "child"}:
         yield from _ends_as_attributes(joint)
 
@@ -265,4 +308,4 @@ def _ends_as_attributes(joint: XacroNode) -> Iterator[Slip]:
         head += "</joint>"
     reaction = "<joint> has its parent and its child as attributes"
     assumption = "the attributes parent and child of <joint> are read as elements"
-    yield Slip((source.edit(start, end, head),), reaction, assumption, source.at(start))
+    yield make_slip((source.edit(start, end, head),), reaction, assumption)

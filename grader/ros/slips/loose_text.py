@@ -3,7 +3,8 @@
 import re
 from collections.abc import Iterator
 
-from grader.base.slips import Slip
+from grader.base import markup
+from grader.base.slips import Slip, make_slip
 from grader.base.source import Source
 from grader.base.text import cut
 from grader.ros.xml.urdf_format import TAGS
@@ -17,6 +18,12 @@ _START = re.compile(
 _BARE = re.compile(r"(?:^|(?<=\s))(?P<name>visual|collision|geometry|inertial)\s*>")
 _END = re.compile(r"(?:^|(?<=\s))/(?P<name>[\w:.-]+)\s*>")
 _NAMED = re.compile(r"""<(?:link|joint)\s[^<>]*?name\s*=\s*["']([^"'<>]*)["']""")
+_ROBOT = re.compile(r"<robot(?=[\s>])")
+_COMMENT = re.compile(r"(?s)<!--(.*?)-->")
+_MARK_OF_COMMENT = re.compile("<!--|-->")
+_END_OF_COMMENT = re.compile(r"(?<!\s)\s*+(?:--\s*+>?|->|-)$")  # as it is misspelt
+_DISABLED = re.compile(r"(?i)\b(?:not?|todo|old|off|disabled|unused|removed|instead|later)\b")
+_ELEMENT = re.compile(r"<(?:link|joint|visual|collision|inertial|material|xacro:\w+)[\s/>]")
 _CLOSED = re.compile(r"(?s)<!--.*?(?:-->|\Z)|</robot\s*>")
 
 
@@ -41,7 +48,7 @@ def _tags_in(source: Source, start: int, end: int) -> Iterator[Slip]:
                 shown = cut(match[0], _MAX_SHOWN)
                 reaction = f"a < is missing before {shown}"
                 assumption = f"{shown} is read as <{shown}"
-                yield Slip((source.edit(at, at, "<"),), reaction, assumption, source.at(at))
+                yield make_slip((source.edit(at, at, "<"),), reaction, assumption)
 
 
 def early_end_slips(source: Source) -> Iterator[Slip]:
@@ -62,4 +69,44 @@ def early_end_slips(source: Source) -> Iterator[Slip]:
     edit = source.edit(early.start(), early.end(), "")
     reaction = f"the robot ends in line {line}, and what follows is not read"
     assumption = f"{early[0]} in line {line} is ignored"
-    yield Slip((edit,), reaction, assumption, source.at(early.start()))
+    yield make_slip((edit,), reaction, assumption)
+
+
+def nested_robot_slips(source: Source) -> Iterator[Slip]:
+    """Yield the <robot> inside of another one, whose content is that of the robot."""
+    text = source.text
+    starts = [match.start() for match in _ROBOT.finditer(text)]
+    if len(starts) != 2:
+        return
+    inner = starts[1]
+    head = markup.head_end(text, inner)[0]
+    end = markup.element_end(text, inner)
+    closing = text.rfind("</robot", inner, end)
+    if closing < 0 or "</robot" not in text[end:]:
+        return
+    edits = (source.edit(inner, head, ""), source.edit(closing, end, ""))
+    assumption = "what is inside of the second <robot> is read as part of the first one"
+    yield Slip(edits, "ROS 2 ignores <robot> in <robot>", assumption, source.at(inner))
+
+
+def open_comment_slips(source: Source) -> Iterator[Slip]:
+    """Yield the comments of one line whose end is missing, so that elements are in them.
+
+    One that may end after the next comment is left as it is, and one that says that a part is not
+    there.
+    """
+    text = source.text
+    for comment in _COMMENT.finditer(text):
+        first, _, rest = comment[1].partition("\n")
+        first = first.rstrip()
+        words = _END_OF_COMMENT.sub("", first)
+        is_left = words == first and _DISABLED.search(words)
+        mark = _MARK_OF_COMMENT.search(text, comment.end())
+        is_later = mark is not None and mark[0] == "-->"
+        if is_left or is_later or "<" in first or not words.strip():
+            continue
+        if "<!--" in rest and _ELEMENT.search(rest):
+            start, line = comment.start(1), source.at(comment.start()).line
+            edit = source.edit(start + len(words), start + len(first), " -->")
+            reaction = f"the comment of line {line} is not closed, so that elements are in it"
+            yield make_slip((edit,), reaction, f"the comment ends in line {line}")

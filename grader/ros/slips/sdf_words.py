@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 
 from grader.base.element_edits import renamed_attribute, renamed_tag
 from grader.base.names import folded
-from grader.base.slips import Slip
+from grader.base.slips import Slip, make_slip
 from grader.ros.slips.nodes import find_place
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
@@ -47,7 +47,7 @@ def gazebo_slips(root: XacroNode, named: Collection[str]) -> Iterator[Slip]:
                 edits = renamed_tag(source, start, meant or "")
                 reaction = f"Gazebo does not know <{node.tag}>"
                 assumption = f"<{node.tag}> is read as <{meant}>"
-                yield Slip(edits, reaction, assumption, source.at(start))
+                yield make_slip(edits, reaction, assumption)
             if meant == "sensor":
                 yield from _attribute_slips(node)
             if (meant or node.tag) != "plugin":
@@ -65,7 +65,7 @@ def _reference_slips(gazebo: XacroNode, named: Collection[str]) -> Iterator[Slip
         edits = renamed_attribute(source, start, name, "reference")
         reaction = f"Gazebo does not know the attribute {name} of <gazebo>"
         assumption = f"the attribute {name} of <gazebo> is read as reference"
-        yield Slip(edits, reaction, assumption, source.at(start))
+        yield make_slip(edits, reaction, assumption)
 
 
 def _attribute_slips(sensor: XacroNode) -> Iterator[Slip]:
@@ -77,4 +77,4 @@ def _attribute_slips(sensor: XacroNode) -> Iterator[Slip]:
             edits = renamed_attribute(source, start, name, meant)
             reaction = f"Gazebo does not know the attribute {name} of <{sensor.tag}>"
             assumption = f"the attribute {name} of <{sensor.tag}> is read as {meant}"
-            yield Slip(edits, reaction, assumption, source.at(start))
+            yield make_slip(edits, reaction, assumption)

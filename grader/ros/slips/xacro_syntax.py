@@ -1,20 +1,19 @@
 """The expressions of xacro whose syntax can be read in one way only."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from functools import partial
 
-from grader.base import markup
-from grader.base.markup import WORD_OF_VALUE
-from grader.base.slips import Slip
-from grader.base.source import Source
+from grader.base.slips import Slip, make_slip
+from grader.base.source import Edit, Source
 from grader.base.text import cut
-from grader.ros.slips.nodes import find_place
+from grader.ros.slips.nodes import WrittenValue, find_place, list_all_values, list_values
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 from grader.ros.xml.urdf_format import PARTS
 
-_MAX_LENGTH = 500  # characters of a value
 _MAX_PLACES = 8  # where a brace may be missing
 _MAX_SHOWN = 60
+_DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+\s*")
 _EXPRESSION = re.compile(r"\$\{([^}$]*)\}")
 _COMMANDS = r"(?:find|arg|env|optenv|eval|dirname|cwd|anon)\b"
 # $(a / 4) with an operator, and $[a / 4]: what is in them is no substitution.
@@ -25,6 +24,11 @@ _MIXED = re.compile(r"\$\(((?:[^()${}]|\([^()${}]*\))*)\}")  # $(a / 4}
 _BARE = re.compile(r"(?:\$(?!\())?\s*+((?=[^*/+-]*+[*/+-])[\w\s.+*/()-]++)")  # a / 4, $a / 4
 _IN_BRACES = re.compile(r"\$\{\{?([^{}$]*)\}\}")
 _WITHOUT_DOLLAR = re.compile(r"(?<![${])(?:\$\s+)?\{([^{}$]*)\}")
+# {side}, $ {side}, $(side), $side
+_UNMARKED = re.compile(
+    r"\$\{+[^{}]*+\}+|(?:\$\s*+)?\{\s*+(?P<brace>[^\W\d]\w*)\s*\}"
+    r"|\$\(\s*(?P<paren>[^\W\d]\w*)\s*\)|\$(?P<bare>[^\W\d]\w*)"
+)
 _OPERATOR = re.compile(r"[-+*/%<>=]|\b(?:and|or|not|if)\b")
 _WORDS = re.compile(r"\b[^\W\d]\w*")
 _TEXT_IN_QUOTES = re.compile(r"('[^']*'|\"[^\"]*\")")
@@ -53,31 +57,95 @@ def expression_slips(root: XacroNode, names: set[str]) -> Iterator[tuple[Slip, .
     Of each, yield all ways to read it. `names` are those of properties and parameters.
     """
     for node in walk(root):
-        source, start = find_place(node)
-        for attribute in markup.attributes(source.text, start):
-            text = source.text[slice(*attribute.value)]
-            if len(text) > _MAX_LENGTH:
-                continue
-            ways: list[str] = []
-            bare = _BARE.fullmatch(text)
-            if "$" in text or "{" in text:
-                is_condition = node.tag in ("xacro:if", "xacro:unless")
-                ways += _read_text(text, names, attribute.name, is_condition=is_condition)
-            if bare is not None and not ways and _is_number(node, attribute.name):
-                ways += [f"${{{bare[1]}}}"] if names.issuperset(_WORDS.findall(bare[1])) else []
-            slips = tuple(_slip(source, attribute, text, new) for new in dict.fromkeys(ways))
-            if slips:
-                yield slips
+        for value in list_values(*find_place(node)):
+            ways = dict.fromkeys(_list_ways(node, value, names))
+            if ways:
+                yield tuple(_slip(value, new) for new in ways)
 
 
-def _slip(source: Source, attribute: markup.Attribute, text: str, new: str) -> Slip:
-    start, end = attribute.start, attribute.end
-    head = source.text[start : attribute.value_start]
-    tail = source.text[attribute.value_end : end]
-    edit = source.edit(start, end, f"{head}{new}{tail}")
-    reaction = f"xacro cannot read {cut(text, _MAX_SHOWN)}"
-    assumption = f"{cut(text, _MAX_SHOWN)} is read as {cut(new, _MAX_SHOWN)}"
-    return Slip((edit,), reaction, assumption, source.at(start))
+def _list_ways(node: XacroNode, value: WrittenValue, names: set[str]) -> list[str]:
+    """Return the ways to read a value with an expression."""
+    text, name = value.text, value.attribute.name
+    ways: list[str] = []
+    if "$" in text or "{" in text:
+        is_condition = node.tag in ("xacro:if", "xacro:unless")
+        ways += _read_text(text, names, is_condition=is_condition)
+    bare = _BARE.fullmatch(text)
+    if bare is not None and not ways and _is_number(node, name):
+        ways += [f"${{{bare[1]}}}"] if names.issuperset(_WORDS.findall(bare[1])) else []
+    return ways
+
+
+def refused_expression_slips(
+    source: Source, start: int, attribute: str | None, name: str
+) -> Iterator[Slip]:
+    """Yield the ways to read an expression that xacro refuses: ** for ^, and a text in quotes.
+
+    A `name` that is not known may be such a text where it is compared: ${side == left}.
+    """
+    word = re.escape(name)
+    compared = re.compile(rf"([=!]=\s*+){word}(?![\w.(\[])|(?<![\w.]){word}(?=\s*+[=!]=)")
+    for value in list_values(source, start):
+        if attribute not in (None, value.attribute.name) or "${" not in value.text:
+            continue
+        quote = "'" if source.text[value.attribute.value_end] == '"' else '"'
+        if name:
+            new = compared.sub(rf"\g<1>{quote}{name}{quote}", value.text)
+        elif _TEXT_IN_QUOTES.search(value.text):
+            continue
+        else:
+            new = _EXPRESSION.sub(lambda match: match[0].replace("^", "**"), value.text)
+        if new != value.text:
+            yield _slip(value, new)
+
+
+def unmarked_slips(nodes: Iterable[XacroNode], names: Collection[str]) -> Iterator[Slip]:
+    """Yield the one slip of all known names that have another form than ${side}.
+
+    Such a form is {side}, $ {side}, $(side) or $side.
+    """
+    edits: list[Edit] = []
+    for value in list_all_values(nodes):
+        new = _UNMARKED.sub(partial(_mark, names), value.text)
+        if new != value.text and value.attribute.name != "params":
+            edits.append(value.edit(new))
+    yield from _slip_of_all(edits, is_refused=False)
+
+
+def decimal_comma_slips(nodes: Iterable[XacroNode]) -> Iterator[Slip]:
+    """Yield the one slip of all numbers with a decimal comma that properties and calls give."""
+    edits: list[Edit] = []
+    for value in list_all_values(node for node in nodes if node.tag.startswith("xacro:")):
+        if _DECIMAL_COMMA.fullmatch(value.text):
+            edits.append(value.edit(value.text.replace(",", ".")))
+    yield from _slip_of_all(edits, is_refused=True)
+
+
+def _slip_of_all(edits: Sequence[Edit], *, is_refused: bool) -> Iterator[Slip]:
+    """Yield the one slip of all values that are written in the same wrong way."""
+    if edits:
+        old, new = (cut(text, _MAX_SHOWN) for text in (edits[0].old, edits[0].new))
+        reaction = f"xacro cannot read {old}"
+        yield make_slip(edits, reaction, f"{old} is read as {new}", is_refused=is_refused)
+
+
+def _mark(names: Collection[str], match: re.Match[str]) -> str:
+    """Return a known name in ${}, or what is written; of side_x, what is known is before _."""
+    name = match["brace"] or match["paren"] or match["bare"] or ""
+    if match["bare"]:
+        while name not in names and "_" in name:
+            name = name.rpartition("_")[0]
+    if not name or name not in names:
+        return match[0]
+    rest = match["bare"][len(name) :] if match["bare"] else ""
+    return f"${{{name}}}{rest}"
+
+
+def _slip(value: WrittenValue, new: str) -> Slip:
+    shown = cut(value.text, _MAX_SHOWN)
+    reaction = f"xacro cannot read {shown}"
+    assumption = f"{shown} is read as {cut(new, _MAX_SHOWN)}"
+    return make_slip([value.edit(new)], reaction, assumption)
 
 
 def list_names(root: XacroNode) -> set[str]:
@@ -91,10 +159,10 @@ def list_names(root: XacroNode) -> set[str]:
     return names
 
 
-def _read_text(text: str, names: set[str], attribute: str, *, is_condition: bool) -> Iterator[str]:
+def _read_text(text: str, names: set[str], *, is_condition: bool) -> Iterator[str]:
     """Yield the ways to read a value whose expressions xacro cannot read."""
     if "${" in _EXPRESSION.sub("", text):  # an expression has no } at its end
-        yield from _with_brace(text, attribute, names)
+        yield from _with_brace(text, names)
         return
     new = _MIXED.sub(r"${\1}", text)
     new = _IN_BRACES.sub(r"${\1}", _IN_BRACKETS.sub(r"${\1}", new))
@@ -121,19 +189,16 @@ def _is_number(node: XacroNode, attribute: str) -> bool:
     return len(PARTS.get(attribute, ())) == 1
 
 
-def _with_brace(text: str, attribute: str, names: set[str]) -> Iterator[str]:
+def _with_brace(text: str, names: set[str]) -> Iterator[str]:
     """Yield a text with the } that an expression lacks in each place where it can be.
 
-    With it, an attribute has as many numbers as its format says, if any place is such. A ) or ]
-    without its opening one stands for it.
+    A ) or ] without its opening one stands for it.
     """
     start = _EXPRESSION.sub(lambda match: " " * len(match[0]), text).index("${")
     end = text.find("$", start + 2)
-    end = end if end >= 0 else len(text)
-    count = len(PARTS.get(attribute, ()))
     ways: list[str] = []
-    counted: list[str] = []
-    for place in re.finditer(r"(?<=\S)(?=\s|\Z)|(?=[)\]_/.])", text[start:end]):
+    searched = text[start : end if end >= 0 else None]
+    for place in re.finditer(r"(?<=\S)(?=\s|\Z)|(?=[)\]_/.])", searched):
         at = start + place.end()
         inner = text[start + 2 : at]
         rest = text[at:]
@@ -143,11 +208,8 @@ def _with_brace(text: str, attribute: str, names: set[str]) -> Iterator[str]:
             continue
         if rest[:1] in (")", "]"):
             rest = rest[1:]
-        new = f"{text[:at]}}}{rest}"
-        ways.append(new)
-        if len(WORD_OF_VALUE.findall(new)) == count:
-            counted.append(new)
-    yield from (counted or ways)[-_MAX_PLACES:]
+        ways.append(f"{text[:at]}}}{rest}")
+    yield from ways[-_MAX_PLACES:]
 
 
 def _with_signs(expression: str, names: set[str], *, is_condition: bool) -> str:

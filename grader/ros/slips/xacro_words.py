@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from grader.base import markup
 from grader.base.element_edits import attributes_text, renamed_attribute
 from grader.base.names import near
-from grader.base.slips import Slip
+from grader.base.slips import Slip, make_slip
 from grader.base.source import Source
 from grader.base.text import cut
 from grader.ros.slips.nodes import find_place
@@ -66,7 +66,7 @@ def _with_attributes(node: XacroNode, values: Mapping[str, str]) -> Slip:
     edit = source.edit(start, end, f"{source.text[start : head - 1]}{given}/>")
     reaction = f"<{node.tag}> has no attribute {next(iter(values))}"
     assumption = f"what is inside of <{node.tag}> is read as{cut(given, _MAX_SHOWN)}"
-    return Slip((edit,), reaction, assumption, source.at(start))
+    return make_slip((edit,), reaction, assumption)
 
 
 def _renamed(node: XacroNode, name: str, meant: str) -> Slip:
@@ -94,7 +94,7 @@ def nameless_slips(source: Source, macros: Mapping[str, Collection[str]]) -> Ite
             reaction = f"a value of <xacro:{call['name']}> has no name"
             assumption = f"{value['quoted']} is read as {new}"
             edit = source.edit(start, end, new)
-            yield Slip((edit,), reaction, assumption, source.at(start), is_refused=True)
+            yield make_slip((edit,), reaction, assumption, is_refused=True)
 
 
 def child_slips(root: XacroNode, macros: Mapping[str, Collection[str]]) -> Iterator[Slip]:

@@ -6,26 +6,30 @@ They are found in its elements and their values.
 import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
+from itertools import chain
 from math import nan
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
+from grader.base import markup
+from grader.base.element_edits import escaped, with_attribute
+from grader.base.errors import MissingElement
 from grader.base.names import MAX_GUESSES, closest, did_you_mean
 from grader.base.problems import NO_FIXES, Effect, Fix, Fixes, Kind, Problem
-from grader.base.slips import Slip
-from grader.base.source import LazyLocation
-from grader.base.text import cut, quoted
+from grader.base.source import Edit, Edits, LazyLocation
+from grader.base.text import cut, enumerated, quoted
 from grader.base.transforms import FULL_TURN, Transform, Vector, rotation_from_quaternion
 from grader.ros.urdf import urdf_problems
-from grader.ros.urdf.model import Joint, Origin, UnresolvedPart, UnresolvedParts
+from grader.ros.urdf.model import Joint, Origin, Robot, UnresolvedPart, UnresolvedParts
 from grader.ros.urdf.numbers import NumberError, number, quaternion, vector
 from grader.ros.urdf.versions import WITH_CAPSULES, UrdfFormat, UrdfVersion, in_words
 from grader.ros.xml.parsing import Element, XmlDocument
 from grader.ros.xml.urdf_format import TAGS
-from grader.ros.xml.xml_problems import RECOVERED
+
+if TYPE_CHECKING:
+    from grader.ros.urdf.meant import MeantName
 
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")  # %n, %1$n, %hhn
 _MAX_PROBLEMS = 1000
-NO_GUESSES = 0
 _PRINTED = frozenset(
     {"origin", "box", "cylinder", "capsule", "sphere", "mass"}
 )  # whose values urdfdom uses as printf's format
@@ -37,6 +41,7 @@ _OF_MISSING = (
     urdf_problems.MIMIC_TARGET,
     urdf_problems.CONTROLLED_JOINT,
 )
+_KEPT = ("visual", "collision", "inertial")
 _ZERO: Vector = (0.0, 0.0, 0.0)
 _NOTHING: UnresolvedParts = {}
 
@@ -52,22 +57,23 @@ class Problems:
         self,
         document: XmlDocument,
         root: Element,
-        guesses: int = MAX_GUESSES,
         urdf_format: UrdfFormat = _FIRST_FORMAT,
+        *,
+        keeps_dropped: bool = False,
     ) -> None:
-        """`guesses` is how many names are compared with known ones."""
+        """With `keeps_dropped`, elements that ROS 2 drops are read with what is known of them."""
         self.format = urdf_format
+        self.keeps_dropped = keeps_dropped
         self.source = document.source
         self.root = root
         self.unresolved = document.unresolved
         self.is_broken = document.root is None  # whether tags in the text are broken
         self.rewrites = document.rewrites
-        # the words for which ROS 2 rejects the file and that surely are others: tags and attributes
-        self.undone: Mapping[tuple[Element, str | None], Fixes] = {}
+        self.robot: Robot | None = None  # that was read of the file
         self.listed: list[Problem] = []
         self.effects: set[Effect] = set()
         self.unlisted = 0
-        self._guesses = guesses
+        self._guesses = MAX_GUESSES  # of names
         self._elements = list(root.iter())
         self._indices = {element: index for index, element in enumerate(self._elements)}
 
@@ -94,7 +100,11 @@ class Problems:
                 and parent is not None
             ):
                 above = parent
+            # What xacro refuses in an element that is kept is one value that is not known.
+            is_value = self.keeps_dropped and above.tag in _KEPT
             for name, reason in unresolved.attributes.items():
+                if is_value and not reason:
+                    continue
                 key = f"@{name}" if inner is element else str(above.tag)
                 parts.setdefault(
                     key, UnresolvedPart(reason, self.location(inner)._replace(attribute=name))
@@ -176,24 +186,50 @@ class Problems:
 
     def _fixes_at(self, element: Element, attribute: str | None) -> Iterable[Fix]:
         """Return the fix of an element or an attribute that surely is another one."""
-        if (element, attribute) in self.undone:
-            return self.undone[element, attribute]
-        slip = self._slips.get((element, attribute))
-        return [slip.fix] if slip is not None else []
+        fix = self._fixes.get((element, attribute))
+        return [fix] if fix is not None else []
+
+    def list_fixes(self) -> Iterable[Fix]:
+        """Return the fixes of all words that surely are others, those of one element together."""
+        by_element: dict[Element, dict[Fix, None]] = {}
+        for (element, _), fix in self._fixes.items():
+            by_element.setdefault(element, {})[fix] = None
+        together: dict[Fix, None] = {}
+        for fixes in by_element.values():
+            edits = tuple(chain.from_iterable(fix.edits for fix in fixes))
+            together[Fix(edits, enumerated([fix.assumption for fix in fixes]))] = None
+        return together
 
     @cached_property
-    def _slips(self) -> Mapping[tuple[Element, str | None], Slip]:
-        from grader.ros.urdf.robot_slips import RobotSlips  # late: few problems are fixed
+    def _fixes(self) -> Mapping[tuple[Element, str | None], Fix]:
+        # Late: few problems are fixed.
+        from grader.ros.urdf.meant import find_meant_names
+        from grader.ros.urdf.robot_slips import RobotSlips
 
-        undone = {element for element, _ in self.undone}
-        return RobotSlips(self.root, self.source, self.unresolved, undone).at_places()
+        slips = RobotSlips(self.root, self.source, self.unresolved).at_places()
+        fixes = {place: slip.fix for place, slip in slips.items() if slip.edits}
+        if self.robot is None:
+            return fixes
+        for names in find_meant_names(self.root, self.robot):
+            edits: dict[Edit, None] = {}
+            for name in names:
+                edits |= dict.fromkeys(self._edits_of(name))
+            sentences = dict.fromkeys(name.sentence for name in names)
+            if edits:
+                fix = Fix(tuple(edits), enumerated([*sentences]))
+                fixes |= {(name.element, name.attribute): fix for name in names}
+        return fixes
 
-    def assumed(
-        self, element: Element, attribute: str | None, sentence: str, fixes: Fixes
-    ) -> Problem:
-        """Return what is assumed about a tag or an attribute for which ROS 2 rejects the file."""
-        location = self.source.tag(self._indices[element], attribute)
-        return Problem(RECOVERED, sentence, location, fixes=fixes)
+    def _edits_of(self, name: "MeantName") -> Edits:
+        """Return the edits that write a name as it is meant."""
+        index, value = self._indices[name.element], escaped(name.meant)
+        if self.rewrites is not None:
+            return next(iter(self.rewrites(index, name.attribute, (name.written, value))), ())
+        source, start = self.source.element(index)
+        there = markup.attribute(source.text, start, name.attribute)
+        if there is None or source.text[slice(*there.value)] != escaped(name.written):
+            return ()  # the tag is broken
+        return (with_attribute(source, start, name.attribute, value),)
 
     def duplicate(self, kind: Kind, element: Element, first: Element) -> None:
         """Add that an element has the name of an earlier one of its kind."""
@@ -245,7 +281,7 @@ class ElementReader:
     value its default.
     """
 
-    __slots__ = ("_consequence", "_kind", "_link", "_problems", "failed")
+    __slots__ = ("_consequence", "_kind", "_link", "_problems", "failed", "unknown")
 
     def __init__(
         self,
@@ -263,10 +299,26 @@ class ElementReader:
         self._consequence = consequence
         self._link = link
         self.failed = False
+        # why values are not known, by the tag and the attribute or child that should have them
+        self.unknown: dict[tuple[str, str], MissingElement] = {}
 
-    def fail(self, reason: str, element: Element, attribute: str | None = None) -> None:
-        """Add a problem: the element is lost."""
+    def fail(
+        self, reason: str, element: Element, attribute: str | None = None, *, lacks: str = ""
+    ) -> None:
+        """Add a problem: the element is lost.
+
+        `lacks` is the attribute or child that the element does not have.
+        """
         self.failed = True
+        if self._problems.keeps_dropped:
+            from grader.ros.urdf.not_known import missing_value  # late: few elements are dropped
+
+            at = self._problems.location(element)._replace(attribute=attribute).resolve()
+            key = str(element.tag), attribute or lacks
+            open_values = self._problems.unresolved.get(element)
+            if open_values is not None and attribute in open_values.attributes:
+                reason = f"xacro cannot expand {attribute} of <{element.tag}>"
+            self.unknown.setdefault(key, missing_value(reason, at))
         consequence = self._consequence.format(quoted(self._link))
         self._problems.add(self._kind, f"{reason}; {consequence}", element, attribute, self._link)
 
@@ -279,7 +331,7 @@ class ElementReader:
             return self._value(element, attribute, number, nan)
         default = TAGS[element.tag].attributes[attribute].default
         if default is None:
-            self.fail(f"<{element.tag}> has no {attribute}", element)
+            self.fail(f"<{element.tag}> has no {attribute}", element, lacks=attribute)
         return float(default or nan)
 
     def vector(self, element: Element, attribute: str, default: Vector = _ZERO) -> Vector:

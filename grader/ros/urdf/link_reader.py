@@ -6,6 +6,7 @@ Its colour is that of `parseMaterial` in `link.cpp` and of `assignMaterial` in `
 """
 
 from collections.abc import Sequence
+from math import nan
 
 from grader.base.source import LazyLocation
 from grader.base.text import quoted
@@ -228,11 +229,21 @@ def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial 
         if tag in inside:
             values += [reader.number(inside[tag], attribute) for attribute in attributes]
         else:
-            reader.fail(f"<inertial> has no <{tag}>", element)
-    if reader.failed:
+            reader.fail(f"<inertial> has no <{tag}>", element, lacks=tag)
+            values += [nan] * len(attributes)
+    if reader.failed and not problems.keeps_dropped:
         return None
     mass, ixx, ixy, ixz, iyy, iyz, izz = values
-    return Inertial(mass, (ixx, ixy, ixz, iyy, iyz, izz), origin, problems.location(element))
+    inertia = (ixx, ixy, ixz, iyy, iyz, izz)
+    inertial = Inertial(mass, inertia, origin, problems.location(element))
+    if not reader.failed:
+        return inertial
+    from grader.ros.urdf.not_known import with_unknown  # late: few elements are dropped
+
+    fields = {"value": "mass", "mass": "mass", "xyz": "origin", "rpy": "origin"}
+    errors = reader.unknown.items()
+    unknown = {fields.get(name, "inertia"): error for (_, name), error in errors}
+    return with_unknown(inertial, unknown)
 
 
 def _read_shape(
@@ -253,8 +264,18 @@ def _read_shape(
     material = inside.get("material") if is_visual else None
     if material is not None and material.get("name") is None:
         reader.fail("<material> in a visual has no name", material)
-    if reader.failed or geometry is None:
+    if geometry is None or (reader.failed and not problems.keeps_dropped):
         return None
+    if reader.failed:
+        from grader.ros.urdf.not_known import with_unknown  # late: few elements are dropped
+
+        errors = reader.unknown.items()
+        of_shape = {name: error for (tag, name), error in errors if tag != "origin"}
+        if not of_shape.keys() <= {*geometry._fields}:
+            return None
+        geometry = with_unknown(geometry, of_shape)
+        of_origin = {name: error for (tag, name), error in errors if tag == "origin"}
+        origin = with_unknown(origin, of_origin)
     if not is_visual:
         return Collision(geometry, origin, problems.location(element))
     if material is None or materials is None:
@@ -278,7 +299,7 @@ def _read_geometry(
         return None
     needed = {"box": "size", "mesh": "filename"}.get(shape.tag)
     if needed and shape.get(needed) is None:
-        reader.fail(f"<{shape.tag}> has no {needed}", shape)
+        reader.fail(f"<{shape.tag}> has no {needed}", shape, lacks=needed)
     geometry = _geometry_from(shape, reader, problems.location(shape))
     for attribute, value in _sizes_by_attribute(geometry):
         if value <= 0.0 and problems.format.version >= WITH_CHECKED_VALUES:

@@ -5,20 +5,18 @@ Names that look misspelt are reported too.
 
 import os
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
-from functools import partial
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
-from grader.base.names import MAX_GUESSES
-from grader.base.problems import Effect, Problem, causes, in_order
+from grader.base.problems import NO_FIXES, Effect, Fixes, Problem, in_order
 from grader.base.source import Source
 from grader.base.text import comment_spans, enumerated, quoted
 from grader.files.limits import ROBOT_ENDINGS
 from grader.files.reading import read_capped
 from grader.ros.known.releases import Release
 from grader.ros.urdf import urdf_problems
-from grader.ros.urdf.diagnostics import NO_GUESSES, Problems
+from grader.ros.urdf.diagnostics import Problems
 from grader.ros.urdf.joint_reader import check_references, read_joint
 from grader.ros.urdf.link_reader import Materials, read_link
 from grader.ros.urdf.link_tree import check_tree
@@ -44,17 +42,16 @@ from grader.ros.xml.urdf_format import (
     TAGS,
     numbers_in,
 )
-from grader.ros.xml.xml_problems import NOT_WELL_FORMED, RECOVERED
-
-if TYPE_CHECKING:
-    from grader.ros.urdf.meant import AsMeant, Word
-
+from grader.ros.xml.xml_problems import NOT_WELL_FORMED
 
 Verdict = Literal["clean", "degraded", "rejected"]
 
-# for which ROS 2 rejects a file: with more of them, no word is read as another one
-_MAX_CAUSES = 300
 _FATAL: frozenset[Effect] = frozenset({"rejects", "undetermined"})
+_DROPPING = {
+    urdf_problems.BAD_VISUAL,
+    urdf_problems.BAD_COLLISION,
+    urdf_problems.BAD_INERTIAL,
+}
 _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 # Correct names that urdfdom does not read: they are not misspellings.
 _EXTENSIONS = frozenset(
@@ -87,10 +84,8 @@ class Reading(NamedTuple):
     root: Element | None = None  # the <robot> that was read; None where the text is not XML
     unresolved: Mapping[Element, Unresolved] = {}  # what xacro leaves open
     recovered: Element | None = None  # the <robot> that was read where the text is not XML
-    # whether ROS 2 would load the robot, which is read with the words in `undone` undone
-    is_meant: bool = False
-    # the tags and words for which ROS 2 rejects the file, and that surely are others
-    undone: "tuple[Word, ...]" = ()
+    is_meant: bool = False  # whether ROS 2 would load the robot if its text were repaired
+    fixes: Fixes = NO_FIXES  # of the words for which ROS 2 rejects the file
 
     @property
     def raw_xacro(self) -> Problem | None:
@@ -183,24 +178,33 @@ def read_robot(document: XmlDocument, newest: UrdfVersion = FIRST) -> Reading:
     return Reading(_verdict(effects), None, in_order(listed), source, root, document.unresolved)
 
 
-def _read_content(document: XmlDocument, root: Element, newest: UrdfVersion) -> Reading:
-    """Return what is read of a robot.
+def read_with_dropped(reading: Reading, releases: Iterable[Release]) -> Robot | None:
+    """Return a robot with the elements that ROS 2 drops for values that are missing or unreadable.
 
-    If ROS 2 rejects it for words that surely stand for others, these are undone.
+    Reading such a value raises MissingElement. Returns None where nothing is dropped.
     """
+    root = reading.elements
+    kinds = {problem.kind for problem in reading.problems}
+    is_refused = any(kind.is_before_ros for kind in kinds)
+    if root is None or reading.robot is None or not (is_refused or _DROPPING & kinds):
+        return None
+    is_expanded = reading.source.is_expanded
+    document = XmlDocument(
+        reading.root, reading.source, [], 0, reading.unresolved, is_expanded=is_expanded
+    )
+    newest = newest_version([*releases])
+    robot, _ = _read_robot(document, root, newest, keeps_dropped=True)
+    return replace(reading.robot, links=robot.links)
+
+
+def _read_content(document: XmlDocument, root: Element, newest: UrdfVersion) -> Reading:
+    """Return what is read of a robot."""
     listed = document.problems
-    read = partial(_read_robot, document, root, newest)
-    robot, problems = read()
+    robot, problems = _read_robot(document, root, newest)
     effects = {problem.kind.effect for problem in listed} | problems.effects
     robot_problems = problems.listed
     incomplete = _why_incomplete(document, robot) if effects.intersection(_FATAL) else ""
     is_meant = document.is_meant and "rejects" not in problems.effects
-    undone: tuple[Word, ...] = ()
-    if document.is_meant and not is_meant and not incomplete:
-        meant = _read_as_meant(root, robot, problems, read)
-        if meant is not None:
-            is_meant, robot, undone = True, meant.robot, tuple(meant.words)
-            robot_problems = meant.problems
     if document.root is None:
         robot_problems = _problems_of_unbroken_lines(robot_problems, listed)
     listed += robot_problems
@@ -215,30 +219,8 @@ def _read_content(document: XmlDocument, root: Element, newest: UrdfVersion) -> 
     elif not document.is_expanded:
         listed += _problems_for_python(document, robot)
     places = (document.source, document.root, document.unresolved, document.recovered)
-    return Reading(verdict, robot, in_order(listed), *places, is_meant, undone)
-
-
-def _read_as_meant(
-    root: Element,
-    robot: Robot,
-    problems: Problems,
-    read: Callable[..., tuple[Robot, Problems]],
-) -> "AsMeant | None":
-    """Return what a rejected file means, with all its problems.
-
-    Returns None if a word can stand for several, or too much is wrong.
-    """
-    rejecting = causes(problems.listed)
-    if len(rejecting) > _MAX_CAUSES:
-        return None
-    from grader.ros.urdf.meant import read_as_meant  # late: few files are rejected
-
-    meant = read_as_meant(root, robot, read)
-    if meant is None:
-        return None
-    problems.undone = {word.place: word.fixes for word in meant.words}
-    independent = _without_other_guesses(read, rejecting, meant.problems)
-    return meant._replace(problems=[*independent, *meant.problems])
+    fixes = Fixes(problems.list_fixes) if verdict == "rejected" else NO_FIXES
+    return Reading(verdict, robot, in_order(listed), *places, is_meant, fixes)
 
 
 def _problems_of_unbroken_lines(
@@ -279,32 +261,13 @@ def _verdict(effects: Collection[Effect]) -> Verdict:
     return "degraded" if "drops" in effects else "clean"
 
 
-def _without_other_guesses(
-    read: Callable[[int], tuple[Robot, Problems]], reported: list[Problem], assumed: list[Problem]
-) -> list[Problem]:
-    """Return problems without guesses where words of another line are read as others.
-
-    These tell what is meant.
-    """
-    lines = {problem.location.line for problem in assumed if problem.kind is RECOVERED}
-    _, problems = read(NO_GUESSES)
-    plain = {(problem.kind, problem.location): problem.message for problem in problems.listed}
-    changed = []
-    for problem in reported:
-        message = problem.message
-        if problem.location.line not in lines:
-            message = plain.get((problem.kind, problem.location), message)
-        changed.append(problem._replace(message=message))
-    return changed
-
-
 def _read_robot(
-    document: XmlDocument, root: Element, newest: UrdfVersion, guesses: int = MAX_GUESSES
+    document: XmlDocument, root: Element, newest: UrdfVersion, *, keeps_dropped: bool = False
 ) -> tuple[Robot, Problems]:
     version = version_in(root.get("version", "1.0"))
     is_read = version is not None and FIRST <= version <= newest
     urdf_format = UrdfFormat(newest, version if is_read and version is not None else newest)
-    problems = Problems(document, root, guesses, urdf_format)
+    problems = Problems(document, root, urdf_format, keeps_dropped=keeps_dropped)
     if root.get("name") is None:
         problems.add(
             urdf_problems.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root
@@ -333,6 +296,7 @@ def _read_robot(
         _read_joints(root, problems),
         tuple(materials.known.values()),
     )
+    problems.robot = robot
     check_references(robot, problems)
     check_tree(robot, elements, problems)
     _check_spelling(root, problems)

@@ -1,10 +1,11 @@
 """The slips of a URDF that ROS 2 loads all the same: it ignores a word, or drops the element."""
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
+from itertools import islice
 
 from grader.base import markup
-from grader.base.element_edits import tag_edits
+from grader.base.element_edits import tag_edits, with_attribute
 from grader.base.names import near
 from grader.base.slips import Slip
 from grader.base.source import Edits, Source
@@ -21,31 +22,22 @@ _Place = tuple[Element, str | None]  # an element, or one of its attributes
 
 
 class RobotSlips:
-    """The search for the slips of one URDF.
-
-    The words for which ROS 2 rejects the file, `undone`, are not among them.
-    """
+    """The search for the slips of one URDF."""
 
     def __init__(
         self,
         root: Element,
         source: Source,
         unresolved: Collection[Element],
-        undone: Collection[Element],
     ) -> None:
         self._root, self._source = root, source
-        self._unresolved, self._undone = unresolved, undone
+        self._unresolved = unresolved
         self._indices = {element: index for index, element in enumerate(root.iter())}
         self._at_places: dict[_Place, Slip] = {}
 
     def listed(self) -> list[Slip]:
         """Return the slips in the order of the elements, each place once."""
-        slips: dict[Edits, Slip] = {}
-        for slip in self._find():
-            slips.setdefault(slip.edits, slip)
-            if len(slips) == _MAX_SLIPS:
-                break
-        return [*slips.values()]
+        return [*{slip.edits: slip for slip in islice(self._find(), _MAX_SLIPS)}.values()]
 
     def at_places(self) -> Mapping[_Place, Slip]:
         """Return the slips by the elements and attributes that they are in."""
@@ -59,7 +51,7 @@ class RobotSlips:
         materials = self._material_slips()
         while waiting:
             element, tag = waiting.pop()
-            if element not in self._undone and element not in self._unresolved:
+            if element not in self._unresolved:
                 yield from self._attribute_slips(element, tag)
             if element in materials:
                 yield materials[element]
@@ -75,7 +67,7 @@ class RobotSlips:
         for child in element:
             written = str(child.tag)
             meant = None
-            if child not in self._undone and child not in self._unresolved:
+            if child not in self._unresolved:
                 meant = meant_tag(written, tag, present)
             if meant is not None:
                 present.add(meant)
@@ -156,29 +148,20 @@ class RobotSlips:
                 uses.setdefault(name, []).append(element)
         slips: dict[Element, Slip] = {}
         for name, elements in uses.items():
-            meant = near(name, definitions) if name and name not in definitions else None
-            if meant is None:
+            near_name = near(name, definitions) if name and name not in definitions else None
+            if near_name is None:
                 continue
+            written, meant, places = name, near_name, elements
             if meant not in uses and len(elements) > 1:
-                slips |= self._slips_of_material([definitions[meant]], name, meant, name)
-            else:
-                slips |= self._slips_of_material(elements, name, name, meant)
-        return slips
-
-    def _slips_of_material(
-        self, elements: Sequence[Element], unknown: str, written: str, meant: str
-    ) -> dict[Element, Slip]:
-        """Return the slips of elements whose name is written as another one."""
-        slips = {}
-        for element in elements:
-            source, start = self._place(element)
-            attribute = markup.attribute(source.text, start, "name")
-            if attribute is not None and source.text[slice(*attribute.value)] == written:
-                text = source.text[attribute.start : attribute.end].replace(written, meant)
-                edit = source.edit(attribute.start, attribute.end, text)
-                reaction = f"there is no material {quoted(unknown)}"
-                assumption = f"the material {quoted(written)} is read as {quoted(meant)}"
-                slips[element] = self._slip(element, (edit,), reaction, assumption, "name")
+                written, meant, places = near_name, name, [definitions[near_name]]
+            for element in places:
+                source, start = self._place(element)
+                there = markup.attribute(source.text, start, "name")
+                if there is not None and source.text[slice(*there.value)] == written:
+                    edit = with_attribute(source, start, "name", meant)
+                    reaction = f"there is no material {quoted(name)}"
+                    assumption = f"the material {quoted(written)} is read as {quoted(meant)}"
+                    slips[element] = self._slip(element, (edit,), reaction, assumption, "name")
         return slips
 
 

@@ -19,6 +19,8 @@ _MAX_LENGTH = 64  # characters of a value
 _SEPARATORS = re.compile(r"(?:(?<!\s)\s++)?[,;]\s*")
 _DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
 _BRACKETS = re.compile(r"\s*[(\[{](.*)[)\]}]\s*")
+_TIMES = re.compile(r"(?<=[\d.])\s*+[xX×*]\s*(?=[-+.\d])")  # 0.6x0.4x0.2
+_DASHES = str.maketrans(dict.fromkeys("‐‑‒–—−", "-"))
 _LETTERS = str.maketrans("OoIl", "0011")
 # How people write the units of attributes, without those of another unit in another element.
 _UNITS = {
@@ -113,7 +115,9 @@ def meant_value(text: str, attribute: str) -> str | None:
     count = len(PARTS.get(attribute, ()))
     if not count or len(text) > _MAX_LENGTH or _is_read(text, count):
         return None
-    plain = _without_letters(_without_unit(text, attribute))
+    plain = _without_letters(_without_unit(text.translate(_DASHES), attribute))
+    if count > 1:
+        plain = _TIMES.sub(" ", plain)
     decimal = _DECIMAL_COMMA.sub(".", plain)
     ways = {plain, _SEPARATORS.sub(" ", plain).strip(), _SEPARATORS.sub(" ", decimal).strip()}
     readable_ways = {way for way in ways if _is_read(way, count)}

@@ -10,7 +10,7 @@ from grader.base.text import enumerated, quoted
 from grader.ros.python.budget import CHARACTERS, Budget, OutOfBudget
 from grader.ros.python.values import EvaluationFails, Undetermined, Value
 from grader.ros.xacro import xacro_problems
-from grader.ros.xacro.corrections import Corrections, Refusal, XacroCorrection
+from grader.ros.xacro.corrections import Refusal, find_correction
 from grader.ros.xacro.functions import document_functions, read_yaml_values
 from grader.ros.xacro.macros import MacroError
 from grader.ros.xacro.scopes import Reported, ScopePlace, XacroFails, XacroScope
@@ -97,13 +97,9 @@ class Expander:
         self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
         self.warnings: list[Problem] = []  # what xacro writes to stderr, and notes
-        self.corrections: list[
-            XacroCorrection
-        ] = []  # of what is refused, where they surely are meant
         self.undetermined: list[UndeterminedUse] = []
         self.refused: list[Refusal] = []  # what hints may correct, and where
         self.calls: tuple[tuple[str, ScopePlace], ...] = ()
-        self._meant = Corrections(files, budget)
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._is_expanded = False
         self._length = 0  # of the expanded document
@@ -208,15 +204,16 @@ class Expander:
         if not isinstance(error, EvaluationFails):
             self.undetermined.append(UndeterminedUse(message, location))
             return message
-        refusal = (error, place, attribute)
-        self.refused.append(refusal)
-        correction = self._meant.of(refusal) if len(self.refused) <= _MAX_CORRECTED else None
+        refusal = Refusal(error, place, attribute)
+        correction = None
+        if len(self.refused) < _MAX_CORRECTED:
+            correction = find_correction(refusal, self.files)
         fixes = NO_FIXES
         if correction is not None:
-            self.corrections.append(correction)
             message = correction.problem or message
             fix = correction.fix
             fixes = Fixes(lambda: [fix])
+        self.refused.append(refusal._replace(correction=correction))
         joint = " " if message.endswith("?") else "; "
         kind = _KINDS.get(type(error), xacro_problems.XACRO_EXPRESSION)
         problem = Problem(kind, f"{message}{joint}{STOPS}", location, fixes=fixes)

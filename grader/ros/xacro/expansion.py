@@ -7,20 +7,19 @@ rest is expanded all the same, so that one defect does not hide another.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import partial
 from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import NotDecided
 from grader.base.merge_conflicts import describe_conflicts, find_conflicts
-from grader.base.problems import Fix, Fixes, Problem
-from grader.base.source import Edit, Edits, Location, Source
+from grader.base.problems import Problem
+from grader.base.source import Location, Source
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.values import EvaluationFails, Undetermined
 from grader.ros.xacro import xacro_problems
-from grader.ros.xacro.corrections import Corrections, Refusal, XacroCorrection, describe_edits
+from grader.ros.xacro.corrections import Refusal
 from grader.ros.xacro.expander import STOPS, Expander, UndeterminedUse
 from grader.ros.xacro.tags import CALL, HANDLERS
 from grader.ros.xacro.texts import OtherArguments, Texts
@@ -34,7 +33,7 @@ from grader.ros.xml.parsing import (
     error_location,
     make_element,
 )
-from grader.ros.xml.xml_problems import MISPLACED_DECLARATION, RECOVERED
+from grader.ros.xml.xml_problems import MISPLACED_DECLARATION
 
 if TYPE_CHECKING:
     from grader.ros.xacro.inventory import Inventory
@@ -61,11 +60,8 @@ class ExpandedSource(Source):
         nodes: list[XacroNode],
         expander: Expander,
         work: int,
-        corrected: Edits = (),
     ) -> None:
         super().__init__(source.path, source.text)
-        # the edits without which xacro refuses what it was expanded from
-        self.corrected = corrected
         self.nodes: Sequence[XacroNode] = nodes
         self._expander, self._work = expander, work
 
@@ -134,11 +130,6 @@ class ExpandedSource(Source):
         return bool(self._expander.problems)
 
     @property
-    def unmarked(self) -> Edits:
-        """The edits that write ${side} where {side} or $side stands for a known name."""
-        return Corrections(self._expander.files, Budget()).unmarked()
-
-    @property
     def open_reason(self) -> str:
         """Why something could not be expanded; empty if everything was."""
         return next((part.reason for part in self._expander.undetermined), "")
@@ -185,16 +176,13 @@ _INSTRUCTION = re.compile(
 _OTHER_PREFIX = re.compile(
     r"Opening and ending tag mismatch: (?P<name>\S+) line (?P<line>\d+) and (?P=name)(?![\w.-])"
 )
-_MAX_ASSUMED = 20
 
 
 class _Expansion(NamedTuple):
     """An expanded file.
 
     If it cannot be expanded at all, `root` is None, and `recovered` is what can be read despite
-    broken tags. `is_meant` says whether xacro refuses nothing else. If what it refuses can surely
-    be corrected, `meant` is the expansion of the corrected files, and `assumed` lists what was
-    corrected.
+    broken tags. `is_meant` says whether xacro refuses nothing else.
     """
 
     root: Element | None
@@ -204,8 +192,6 @@ class _Expansion(NamedTuple):
     unresolved: Mapping[Element, Unresolved]  # the elements that are not known completely
     recovered: Element | None = None
     is_meant: bool = False
-    assumed: tuple[Problem, ...] = ()
-    meant: "_Expansion | None" = None
     warnings: tuple[Problem, ...] = ()  # what xacro writes to stderr, and notes
 
     @property
@@ -231,79 +217,23 @@ def expand(
     workspace: SurroundingFiles,
     arguments: Mapping[str, str | None],
     others: OtherArguments = "default",
-    edits: Edits = (),
 ) -> _Expansion:
     """Return a xacro file as xacro expands it with these arguments; never raises.
 
-    `path` is that in the workspace.
-
-    `others` says what is known of other arguments. With `edits`, which surely are meant, `meant` is
-    the expansion of the files after these, too.
+    `path` is that in the workspace. `others` says what is known of other arguments.
     """
-    read = partial(_expand, data, path, workspace, arguments, others)
-    expansion, expander = read({})
-    refused = expander.refused if expander is not None else []
-    meant = expansion
-    corrected, assumed = dict.fromkeys(edits), dict[str, Problem]()
-    if edits:
-        fix, first = Fix(edits, describe_edits(edits)), edits[0]
-        at = Location(first.path, first.line, first.column)
-        fixes = Fixes(lambda: [fix])
-        assumed[fix.assumption] = Problem(RECOVERED, fix.assumption, at, fixes=fixes)
-        meant, expander = read(_by_path(corrected))
-    while expander is not None and len(assumed) < _MAX_ASSUMED:
-        new = _new_corrections(expander, corrected)
-        if not new:
-            break
-        for correction in new:
-            corrected |= dict.fromkeys(correction.fix.edits)
-            sentence = correction.fix.assumption
-            assumed.setdefault(sentence, Problem(RECOVERED, sentence, correction.location))
-        meant, expander = read(_by_path(corrected))
-    if expander is None or meant is expansion:
-        return expansion
-    expander.refused[:0] = refused  # for hints
-    return expansion._replace(meant=meant, assumed=tuple(assumed.values()))
-
-
-def _new_corrections(expander: Expander, corrected: Mapping[Edit, None]) -> list[XacroCorrection]:
-    """Return the corrections to make next; none if all of them are made."""
-    # Those of elements come first: they may define names.
-    new = [correction for correction in expander.corrections if correction.is_of_element]
-    new = new or expander.corrections
-    if all(corrected.keys() >= set(correction.fix.edits) for correction in new):
-        return []
-    return new
-
-
-def _by_path(edits: Iterable[Edit]) -> dict[str, Edits]:
-    by_path: dict[str, Edits] = {}
-    for edit in edits:
-        by_path[edit.path] = (*by_path.get(edit.path, ()), edit)
-    return by_path
-
-
-def _expand(
-    data: bytes,
-    path: str,
-    workspace: SurroundingFiles,
-    arguments: Mapping[str, str | None],
-    others: OtherArguments,
-    edits: Mapping[str, Edits],
-) -> tuple[_Expansion, Expander | None]:
-    """Return an expansion, and its expander unless there was nothing to expand."""
     plain, budget = Source(path, data.decode("utf-8", "surrogateescape")), workspace.budget
     before = budget.used
     try:
-        source, refused, is_recovered = _read(data, plain, budget, edits.get(path, ()))
+        source, refused, is_recovered = _read(data, plain, budget)
     except EvaluationFails as error:
         problem = Problem(xacro_problems.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
-        return _Expansion(None, plain, (problem,), (), {}), None
+        return _Expansion(None, plain, (problem,), (), {})
     except (Undetermined, OutOfBudget) as error:
-        return _Expansion(None, plain, (), (UndeterminedUse(str(error), plain.at(0)),), {}), None
+        return _Expansion(None, plain, (), (UndeterminedUse(str(error), plain.at(0)),), {})
     if source is None:
-        return _Expansion(None, plain, refused, (), {}), None
-    files = Files(workspace, path, edits)
+        return _Expansion(None, plain, refused, (), {})
+    files = Files(workspace, path)
     files.documents[path] = source
     refused = (*refused, *_instructions(plain))
     expander = Expander(files, arguments, budget, HANDLERS, CALL)
@@ -312,10 +242,9 @@ def _expand(
     nodes: list[XacroNode] = []
     unresolved: dict[Element, Unresolved] = {}
     element = _element(root, nodes, unresolved)
-    corrected = tuple(edit for of_file in edits.values() for edit in of_file)
-    expansion = _Expansion(
+    return _Expansion(
         None if is_recovered else element,
-        ExpandedSource(plain, nodes, expander, budget.used - before, corrected),
+        ExpandedSource(plain, nodes, expander, budget.used - before),
         (*refused, *expander.problems),
         tuple(expander.undetermined),
         unresolved,
@@ -323,11 +252,10 @@ def _expand(
         is_meant=not expander.problems,
         warnings=tuple(expander.warnings),
     )
-    return expansion, expander
 
 
 def _read(
-    data: bytes, text: Source, budget: Budget, edits: Edits
+    data: bytes, text: Source, budget: Budget
 ) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
     """Return the elements of a file, and what xacro refuses in it.
 
@@ -335,7 +263,7 @@ def _read(
     """
     path = text.path
     try:
-        return read_nodes(data, path, budget, edits=edits), (), False
+        return read_nodes(data, path, budget), (), False
     except XMLSyntaxError as error:
         what, location = f"xacro needs well-formed XML: {error.msg}", error_location(error, text)
         prefixes = _OTHER_PREFIX.match(error.msg or "")
@@ -349,8 +277,8 @@ def _read(
         what, location = describe_conflicts(text.text, conflicts), text.at(conflicts[0].start)
     refused = (Problem(xacro_problems.XACRO_NOT_XML, f"{what}; {STOPS}", location),)
     with suppress(XMLSyntaxError):
-        return read_nodes(data, path, budget, is_repaired=True, edits=edits), refused, False
-    recovered, assumed = recovered_nodes(data, path, budget, edits)
+        return read_nodes(data, path, budget, is_repaired=True), refused, False
+    recovered, assumed = recovered_nodes(data, path, budget)
     return recovered, (*refused, *assumed) if recovered is not None else refused, True
 
 

@@ -2,7 +2,6 @@
 
 import re
 from typing import NamedTuple
-from unicodedata import normalize
 
 from grader.base.names import near
 from grader.ros.python.budget import Budget
@@ -26,8 +25,6 @@ _WITH_DEFAULT = re.compile(
     """,
     re.ASCII | re.VERBOSE,
 )
-# How letters outside of ASCII are written where a keyboard has none.
-_SPELLINGS = {"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "ø": "oe", "å": "aa", "æ": "ae", "ñ": "n"}
 _QUOTED = re.compile(r"""\$\{[^}]*(?:\}|\Z)|'[^'\n]*'|"[^"\n]*\"""")
 
 
@@ -95,14 +92,7 @@ def bind_values(
                 f"the macro {macro.name} has no parameter {name}; it has: "
                 f"{', '.join(known) or 'none'}"
             )
-            absent = [
-                parameter for parameter in macro.parameters if parameter.name not in call.attributes
-            ]
-            meant = (
-                near(name, [parameter.name for parameter in absent])
-                or _only_lacking(name, absent)
-                or _in_other_letters(name, absent)
-            )
+            meant = _find_meant(name, macro, call)
             raise MacroError(message, UnknownName(name, known, "parameter", meant))
         del left[first[name]]
         texts.check_name(name, macro.body.place, "params")
@@ -110,36 +100,14 @@ def bind_values(
     return list(left.values())
 
 
-def _only_lacking(name: str, absent: list[_MacroParameter]) -> str | None:
-    """Return the one parameter that a call lacks, if a name differs from it in one letter.
-
-    For example, z is meant by y.
-    """
-    needed = [
-        parameter.name
-        for parameter in absent
-        if parameter.default is None and not parameter.is_block
-    ]
-    if len(needed) != 1 or len(needed[0]) != len(name):
-        return None
-    differing = sum(one != other for one, other in zip(name, needed[0], strict=True))
-    return needed[0] if differing == 1 else None
-
-
-def _in_other_letters(name: str, absent: list[_MacroParameter]) -> str | None:
-    """Return the one parameter that a name is with other letters outside of ASCII: höhe, hoehe."""
-    ways = _ways_in_ascii(name)
-    meant = [parameter.name for parameter in absent if ways & _ways_in_ascii(parameter.name)]
-    return meant[0] if len(meant) == 1 else None
-
-
-def _ways_in_ascii(name: str) -> set[str]:
-    """Return how a name may be written without letters outside of ASCII: hoehe, hohe."""
-    plain = normalize("NFKD", name.casefold()).encode("ascii", "ignore").decode()
-    spelt = normalize("NFC", name.casefold())
-    for letter, letters in _SPELLINGS.items():
-        spelt = spelt.replace(letter, letters)
-    return {plain, normalize("NFKD", spelt).encode("ascii", "ignore").decode()} - {""}
+def _find_meant(name: str, macro: Macro, call: XacroNode) -> str | None:
+    """Return the parameter that a name stands for: a near one, or the one that a call lacks."""
+    absent = [other for other in macro.parameters if other.name not in call.attributes]
+    meant = near(name, [parameter.name for parameter in absent])
+    needed = [other.name for other in absent if other.default is None and not other.is_block]
+    if meant is None and len(needed) == 1:
+        return needed[0]
+    return meant
 
 
 def bind_blocks(
@@ -151,8 +119,7 @@ def bind_blocks(
         if parameter.is_block:
             if not waiting:
                 raise MacroError(
-                    f"this call of the macro {macro.name} has no element for {parameter.name}",
-                    lacking=(parameter.name,),
+                    f"this call of the macro {macro.name} has no element for {parameter.name}"
                 )
             definition = XacroDefinition(parameter.name, "", macro.body.place, "params", inner)
             inner.bind(parameter.name, waiting.pop(0), definition=definition)
@@ -183,6 +150,5 @@ def bind_defaults(
             missing.append(parameter.name)
     if missing:
         raise MacroError(
-            f"this call of the macro {macro.name} gives no value for {', '.join(missing)}",
-            lacking=tuple(missing),
+            f"this call of the macro {macro.name} gives no value for {', '.join(missing)}"
         )

@@ -4,8 +4,7 @@ A value is changed where it is defined, if a name alone gives it: in a property,
 a macro call, in the default of an argument. A number from which it is computed gets the value with
 which the result is the wanted one; an expression that defines it is negated or replaced. Else it is
 replaced where it is used, or given in a macro call that lacks it. Nothing that a YAML file gives is
-changed. What xacro refuses is corrected by near names, by the prefix xacro, and by arguments that
-other calls of a macro give.
+changed. A name that xacro does not know is corrected by similar ones.
 """
 
 import re
@@ -16,27 +15,23 @@ from math import isclose
 from typing import NamedTuple
 
 from grader.base import markup
-from grader.base.element_edits import format_number, merged, tag_edits, with_attribute
+from grader.base.element_edits import format_number, merged, with_attribute
 from grader.base.markup import WORD_OF_VALUE
-from grader.base.names import near
+from grader.base.names import closest, near
 from grader.base.source import Edit, Edits, Location, Source
-from grader.base.text import in_backticks
 from grader.ros.python.values import EvaluationSignal
 from grader.ros.xacro.corrections import (
     Refusal,
     negated,
     respellings,
-    values_of_other_calls,
 )
 from grader.ros.xacro.expansion import ExpandedSource
-from grader.ros.xacro.scopes import Key, ScopePlace, XacroDefinition, XacroFails, XacroScope
+from grader.ros.xacro.scopes import Key, ScopePlace, XacroDefinition, XacroScope
 from grader.ros.xacro.texts import Texts
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
-_MAX_NAMES, _MAX_NODES = 8, 2000
-_PREFIXED = ("property", "arg", "macro", "include", "if", "unless")
-_NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
+_MAX_NAMES = 20  # that xacro refuses
 _EXPRESSION = re.compile(r"\$\{([^}]*)\}")
 _NAME = re.compile(r"(?<![\w.'\"])[^\W\d]\w*(?![\w(])")
 _NUMBER = re.compile(r"\s*+[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?\s*")
@@ -480,24 +475,17 @@ def _is_equal(one: str, other: str) -> bool:
         return False
 
 
-def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
-    """Return the edits that correct a text in quotes in a condition: 'rigth'.
-
-    The condition is that of an <xacro:if> or <xacro:unless>.
-    """
-    edits: list[Edits] = []
-    for tag in re.finditer(r"<xacro:(?:if|unless)\b", source.text):
-        value = markup.attribute(source.text, tag.start(), "value")
-        if value is None:
+def _conditions(document: XacroNode, known: Sequence[str]) -> Iterator[Edits]:
+    """Yield the edits that correct a text in quotes in a condition: 'rigth'."""
+    for node in walk(document):
+        if node.tag not in ("xacro:if", "xacro:unless"):
             continue
-        text = source.text[value.value_start : value.value_end]
-        for single, double in re.findall(r"'(\w+)'|\"(\w+)\"", text):
-            word = single or double
+        text = node.attributes.get("value", "")
+        for word in re.findall(r"['\"](\w+)['\"]", text):
             meant = near(word, known) if word not in known else None
             if meant is not None:
                 new = re.sub(rf"\b{word}\b", meant, text)
-                edits.append((with_attribute(source, tag.start(), "value", new),))
-    return edits
+                yield (with_attribute(*node.place.written, "value", new),)
 
 
 class _XacroMistake(NamedTuple):
@@ -568,26 +556,19 @@ class ExpandedEdits:
         return indices
 
     def corrections(self, names: Sequence[str]) -> list[_XacroMistake]:
-        """Return edits that may correct names, calls of macros, and conditions.
-
-        The names are undeclared or undefined.
+        """Return edits that may correct names that are not known, and conditions.
 
         `names` are those that the reference and the format have.
         """
-        written = Source(self._source.path, self._source.text)
-        if self._source.corrected:
-            texts = in_backticks(edit.old for edit in self._source.corrected)
-            mistakes = [_XacroMistake(self._source.corrected, f"xacro refuses {texts or 'this'}")]
-        else:
-            mistakes = []
-        mistakes += _corrections(written, self._source.documents, self._source.refused)
+        mistakes = [*_respelt(self._source.refused)]
         given = sorted({word for name in names for word in name.split("_")})
         for document in self._source.documents.values():
-            edited = _conditions(document.place.source, given)
+            edited = _conditions(document, given)
             mistakes += [_XacroMistake(edits, "a text in a condition") for edits in edited]
-        return list({correction.edits: correction for correction in reversed(mistakes)}.values())[
-            ::-1
-        ]
+        unique: dict[Edits, _XacroMistake] = {}
+        for mistake in mistakes:
+            unique.setdefault(mistake.edits, mistake)
+        return [*unique.values()]
 
     def calls(self, edit: Edit) -> dict[str, list[Location]]:
         """Return the calls of the macros that an edit is in, by their names."""
@@ -615,51 +596,11 @@ class ExpandedEdits:
         return _Rewriter(self._source.texts)
 
 
-def _corrections(
-    document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]
-) -> Iterator[_XacroMistake]:
-    """Yield the edits that may correct what xacro refuses in a document.
-
-    The files that the document includes are part of it.
-    """
-    yield from _declare_prefix(document)
-    nodes = [node for file in files.values() for node in islice(walk(file), 1, _MAX_NODES)]
-    yield from _add_prefixes(nodes)
-    named = 0
-    for error, place, attribute in refusals:
-        if isinstance(error, XacroFails) and (error.unknown is not None or error.lacking):
-            yield from _correct_names(error, place, attribute, nodes)
-            named += 1
-        if named == _MAX_NAMES:
-            return
-
-
-def _declare_prefix(document: Source) -> Iterator[_XacroMistake]:
-    """Yield the edit that declares the prefix xacro, if a document uses it and does not."""
-    text = document.text
-    if "xmlns:xacro" not in text and "xacro:" in text:
-        _, start = document.element(0)
-        end = markup.name_end(text, start)
-        edit = document.edit(start, end, text[start:end] + _NAMESPACE)
-        yield _XacroMistake((edit,), "the prefix xacro, which is not declared")
-
-
-def _add_prefixes(nodes: Sequence[XacroNode]) -> Iterator[_XacroMistake]:
-    """Yield the edits that write xacro: before tags of xacro and calls of macros."""
-    macros = {node.attributes.get("name", "") for node in nodes if node.tag == "xacro:macro"}
-    for node in nodes:
-        if node.tag in _PREFIXED or node.tag in macros:
-            edits = tag_edits(*node.place.written, node.tag, f"xacro:{node.tag}")
-            yield _XacroMistake(edits, f"<{node.tag}> without xacro:")
-
-
-def _correct_names(
-    error: XacroFails, place: ScopePlace, attribute: str | None, nodes: Sequence[XacroNode]
-) -> Iterator[_XacroMistake]:
-    """Yield the edits for a name that is not known, and for values that a call lacks."""
-    if error.unknown is not None:
-        for edits in respellings(place, attribute, error.unknown):
-            yield _XacroMistake(edits, "a name that xacro does not know")
-    if error.lacking:
-        for edits, values in values_of_other_calls(place, nodes, error.lacking):
-            yield _XacroMistake(edits, f"this call gives no value for {' and '.join(values)}")
+def _respelt(refusals: Sequence[Refusal]) -> Iterator[_XacroMistake]:
+    """Yield the edits that correct names that are not known to similar ones."""
+    for refusal in refusals[:_MAX_NAMES]:
+        unknown = refusal.unknown
+        if unknown is not None:
+            similar = closest(unknown.name, unknown.known)
+            for edits, _ in respellings(refusal, unknown, similar):
+                yield _XacroMistake(edits, "a name that xacro does not know")

@@ -89,16 +89,11 @@ class UnknownName(NamedTuple):
 
 
 class XacroFails(EvaluationFails):
-    """Something that xacro refuses.
+    """Something that xacro refuses; the reason may be a name that it does not know."""
 
-    The reason may be a name that it does not know, or values that a call lacks.
-    """
-
-    def __init__(
-        self, message: str, unknown: UnknownName | None = None, lacking: tuple[str, ...] = ()
-    ) -> None:
+    def __init__(self, message: str, unknown: UnknownName | None = None) -> None:
         super().__init__(message)
-        self.unknown, self.lacking = unknown, lacking
+        self.unknown = unknown
 
 
 class Reported(EvaluationFails):

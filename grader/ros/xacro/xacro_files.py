@@ -2,7 +2,7 @@
 
 import posixpath
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from typing import Protocol
 
 from grader.base.errors import InputError, NotDecided
@@ -75,9 +75,8 @@ class XmlFails(EvaluationFails):
 class Files:
     """The files that are open while a document is expanded, innermost last."""
 
-    def __init__(self, workspace: SurroundingFiles, path: str, edits: Mapping[str, Edits]) -> None:
-        """`edits` correct the files before they are read, by their paths."""
-        self._workspace, self._budget, self._edits = workspace, workspace.budget, edits
+    def __init__(self, workspace: SurroundingFiles, path: str) -> None:
+        self._workspace, self._budget = workspace, workspace.budget
         self.open = [path]
         self.documents: dict[str, XacroNode] = {}  # every file that was read, as it is written
         self.broken: dict[str, Source] = {}  # the files that are no XML
@@ -167,9 +166,7 @@ class Files:
             raise FileFails(f"{path} includes itself again and again")
         data = self.read(path)
         try:
-            self.documents[path] = read_nodes(
-                data, path, self._budget, edits=self._edits.get(path, ())
-            )
+            self.documents[path] = read_nodes(data, path, self._budget)
         except XMLSyntaxError as error:
             raise self._not_xml(path, data, error.msg) from None
         return self.documents[path]

@@ -4,12 +4,11 @@ Each has the place in the source that it came from.
 """
 
 import re
-from bisect import bisect_right
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from grader.base.problems import Problem
 from grader.base.reuse import reuse
-from grader.base.source import Edits, Source
+from grader.base.source import Source
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import EvaluationFails, Undetermined
 from grader.ros.xacro.scopes import ScopePlace
@@ -74,27 +73,25 @@ def walk(node: XacroNode) -> Iterator[XacroNode]:
             waiting += reversed(current.elements)
 
 
-def read_nodes(
-    data: bytes, path: str, budget: Budget, *, is_repaired: bool = False, edits: Edits = ()
-) -> XacroNode:
+def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = False) -> XacroNode:
     """Return the root of an XML file.
 
     Raises XMLSyntaxError, and Undetermined for a file with entities of its own.
 
     With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no
-    xmlns:xacro. The text is read after the `edits`; places are those in the text before.
+    xmlns:xacro.
     """
     _decode(data, budget)
-    root, parts = _read(data, path, is_repaired, edits)
+    root, parts = _read(data, path, is_repaired)
     budget.charge(parts)
     return root
 
 
 @reuse
-def _read(data: bytes, path: str, is_repaired: bool, edits: Edits) -> tuple[XacroNode, int]:
+def _read(data: bytes, path: str, is_repaired: bool) -> tuple[XacroNode, int]:
     """Return the root of an XML file, and what its attributes are charged."""
     source = Source(path, data.decode())
-    text, origin = _edited(source, edits)
+    text = source.text
     xml = _DECLARATION.sub(lambda match: " " * len(match[0]), text, count=1)
     if is_repaired:
         xml = _MISPLACED.sub(lambda match: " " * len(match[0]), xml)
@@ -106,50 +103,11 @@ def _read(data: bytes, path: str, is_repaired: bool, edits: Edits) -> tuple[Xacr
     if "<![CDATA[" in text and any("$" in section for section in _CDATA.findall(text)):
         raise Undetermined("a CDATA section with $ is not supported")
     budget = Budget()
-    if edits:
-        written, count = Source(path, text), sum(1 for _ in root.iter())
-        source = Source(
-            path, source.text, [origin(written.element(index)[1]) for index in range(count)]
-        )
     return _nodes(root, source, budget), budget.used
 
 
-def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
-    """Return a text after edits, and what returns the offset before them of a character.
-
-    A character that is moved has its own offset.
-
-    Of edits that overlap, the first counts.
-    """
-    placed = [(source.start_offset(edit), edit) for edit in edits]
-    removed: dict[str, int] = {}  # texts that are removed, and where each begins
-    for start, edit in placed:
-        if not edit.new:
-            removed[edit.old.strip()] = start + len(edit.old) - len(edit.old.lstrip())
-    pieces: list[str] = []
-    # of the pieces: the offset after the edits, and the one before
-    places: list[tuple[int, int]] = []
-    length = position = 0
-    for start, edit in sorted(placed, key=lambda pair: pair[0]):
-        if start < position:
-            continue
-        kept = source.text[position:start]
-        places.append((length, position))
-        places.append((length + len(kept), removed.get(edit.new.strip(), start)))
-        pieces += [kept, edit.new]
-        length += len(kept) + len(edit.new)
-        position = start + len(edit.old)
-    places.append((length, position))
-
-    def origin(offset: int) -> int:
-        after, before = places[bisect_right(places, offset, key=lambda place: place[0]) - 1]
-        return min(before + offset - after, len(source.text))
-
-    return "".join([*pieces, source.text[position:]]), origin
-
-
 def recovered_nodes(
-    data: bytes, path: str, budget: Budget, edits: Edits = ()
+    data: bytes, path: str, budget: Budget
 ) -> tuple[XacroNode | None, list[Problem]]:
     """Return what can be read of a file with broken tags, and what was assumed.
 
@@ -157,15 +115,14 @@ def recovered_nodes(
     """
     from grader.ros.xml.repair import repair  # late: few files are broken
 
-    written = Source(path, _decode(data, budget))
-    text, origin = _edited(written, edits)
+    text = _decode(data, budget)
     repaired = repair(text)
-    source = Source(path, written.text, [*map(origin, repaired.offsets)])
+    source = Source(path, text, repaired.offsets)
     assumed = [
         Problem(
             assumption.kind,
             assumption.message,
-            source.at(origin(assumption.offset)),
+            source.at(assumption.offset),
             assumption.subject,
         )
         for assumption in repaired.assumed

@@ -3,21 +3,19 @@
 These are tags that lack their prefix, which it leaves and ROS 2 ignores.
 """
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
-from itertools import islice
+from itertools import chain, islice
 from typing import NamedTuple
 
 from grader.base.element_edits import tag_edits
 from grader.base.slips import Slip
-from grader.ros.python.budget import Budget, OutOfBudget
-from grader.ros.python.values import Undetermined
 from grader.ros.xacro.expansion import ExpandedSource
-from grader.ros.xacro.macros import MacroError, read_parameters
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 from grader.ros.xml.urdf_format import CHILDREN
 
 _MAX_NODES = 2000
-_MAX_WORK = 20_000  # parts
+_DEFAULT = re.compile(r":?=.*")
 # The attributes of xacro's own tags, by which a tag without the prefix is known.
 _OWN_TAGS = {
     "include": {"filename"},
@@ -58,20 +56,14 @@ def xacro_slips(source: ExpandedSource) -> Iterator[Slip]:
 def _calls(roots: Iterable[XacroNode]) -> Mapping[str, _Call]:
     """Return what the call of each macro gives."""
     calls: dict[str, _Call] = {}
-    budget = Budget(_MAX_WORK)
-    for root in roots:
-        for node in islice(walk(root), _MAX_NODES):
-            if node.tag != "xacro:macro":
-                continue
-            try:
-                parameters = read_parameters(node.attributes.get("params", ""), budget)
-            except (MacroError, Undetermined, OutOfBudget):
-                continue
-            values = [parameter for parameter in parameters if not parameter.is_block]
-            needed = frozenset(parameter.name for parameter in values if parameter.default is None)
-            known = frozenset(parameter.name for parameter in values)
+    for node in chain.from_iterable(islice(walk(root), _MAX_NODES) for root in roots):
+        if node.tag == "xacro:macro":
+            words = node.attributes.get("params", "").split()
+            values = [word for word in words if not word.startswith("*")]
+            needed = frozenset(word for word in values if word.isidentifier())
+            known = frozenset(_DEFAULT.sub("", word) for word in values)
             name = node.attributes.get("name", "").removeprefix("xacro:")
-            calls[name] = _Call(needed, known, len(parameters) - len(values))
+            calls[name] = _Call(needed, known, len(words) - len(values))
     return calls
 
 

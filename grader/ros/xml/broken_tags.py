@@ -13,7 +13,7 @@ _QUOTES = "\"'“”„‘’‚"
 # The name of an attribute with what stands for its = : name==, name:, name =:, or nothing.
 _NAME = re.compile(
     r"""\s*+(?P<name>[A-Za-z_][\w.-]*(?::[A-Za-z_][\w.-]*)?)
-    (?:\s*+(?:=\s*+)++|\s*+:\s*+(?:=\s*+)?|\s++)(?=["'“”„‘’‚])""",
+    (?:\s*+(?:=\s*+)++|\s*+:\s*+(?:=\s*+)?|\s*+)(?=["'“”„‘’‚])""",
     re.VERBOSE,
 )
 # The name of the next attribute at the end of a value whose quote is not closed.

@@ -21,6 +21,7 @@ from grader.ros.package.finding import (
 from grader.ros.package.made_paths import made_paths
 from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Absent, Read, Surroundings, Unreadable, read_as_ros
+from grader.ros.package.robot_readings import read_as_meant
 from grader.ros.package.robots import RobotFile, find_robots, list_parts
 from grader.ros.python.budget import READING, Budget
 from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME, UNKNOWN_LINK
@@ -178,7 +179,7 @@ def _read(
 ) -> Read | Unreadable:
     try:
         data = tree.files[file.path].read(max_size)
-        return read_as_ros(data, file.path, surroundings)
+        return read_as_meant(read_as_ros(data, file.path, surroundings), surroundings)
     except (InputError, NotDecided) as error:
         return Unreadable(file.path, str(error))
 

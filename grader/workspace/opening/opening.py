@@ -16,7 +16,7 @@ from grader.files.reading import read_capped, read_standard_input, read_start
 from grader.files.tree import File, Tree, make_tree, overlaid
 from grader.ros.known.releases import StatedReleases
 from grader.ros.package.package import MANIFEST, Package
-from grader.ros.package.robot_file import Surroundings, read_as_ros
+from grader.ros.package.robot_file import Read, Surroundings, read_as_ros
 from grader.ros.python.budget import Budget
 from grader.workspace.opening.opened import OpenedWorkspace
 
@@ -67,7 +67,13 @@ def open_workspace(
         alone = Surroundings(Budget(), arguments=arguments)
         if stated is not None:
             alone = alone._replace(releases=stated.releases)
-        return open_file(path, max_size, alone, with_neighbours=True)
+        opened = open_file(path, max_size, alone, with_neighbours=True)
+        if not isinstance(opened.urdf, Read):
+            return opened
+        from grader.ros.package.robot_readings import read_as_meant  # late: `grade` needs none
+
+        around = alone._replace(tree=opened.whole_tree, packages=opened.neighbours)
+        return replace(opened, urdf=read_as_meant(opened.urdf, around))
     # Late: a URDF on its own needs no search.
     from grader.files.gitignore import without_git_ignored
     from grader.workspace.opening.all_robots import read_workspace

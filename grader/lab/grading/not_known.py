@@ -1,0 +1,64 @@
+"""Judge what is written of elements that ROS 2 drops, because a value of them is not known."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+from grader.lab.grading.deciding import decide
+from grader.lab.grading.report import Result
+from grader.lab.rubric.rubric import Rubric
+from grader.lab.submission.submission import Submission
+from grader.ros.package.robot_file import Read
+from grader.ros.urdf.reader import read_with_dropped
+
+
+def judge_known(
+    rubric: Rubric, submission: Submission, results: tuple[Result, ...], wanted: Collection[str]
+) -> tuple[Result, ...]:
+    """Return the results with those of what is known, where an element is dropped.
+
+    The first criterion that is lost and needs what is not known pays; without one, the first that
+    is lost as written. No criterion is worse than as written.
+    """
+    known = _with_dropped(submission)
+    if known is None:
+        return results
+    after = {result.criterion.id: result for result in decide(rubric, known, wanted)}
+    lost = [result for result in results if result.is_lost]
+    judged = _with_payers(lost, after)
+    is_paid = any(judged[result.criterion.id].carried for result in lost)
+    for result in lost:
+        outcome = judged[result.criterion.id].outcome
+        is_at_place = outcome.status == "failed" and outcome.location is not None
+        is_paid |= is_at_place and outcome.mistake != result.outcome.mistake
+    passing = [result for result in lost if not judged[result.criterion.id].is_lost]
+    if passing and not is_paid:
+        judged[passing[0].criterion.id] = passing[0]
+    return tuple(judged.get(result.criterion.id, result) for result in results)
+
+
+def _with_dropped(submission: Submission) -> Submission | None:
+    """Return a submission whose robot has what ROS 2 drops; None if it drops nothing."""
+    urdf = submission.urdf
+    if not isinstance(urdf, Read):
+        return None
+    robot = read_with_dropped(urdf.reading, filter(None, [submission.distro]))
+    if robot is None:
+        return None
+    return replace(submission, urdf=urdf._replace(reading=urdf.reading._replace(robot=robot)))
+
+
+def _with_payers(lost: Collection[Result], after: Mapping[str, Result]) -> dict[str, Result]:
+    """Return the results of lost criteria on what is known, by their ids.
+
+    If the criterion that carries others passes as written, the first of these pays.
+    """
+    names = {result.criterion.id for result in lost}
+    payers: dict[str, str] = {}
+    judged: dict[str, Result] = {}
+    for result in lost:
+        name, known = result.criterion.id, after[result.criterion.id]
+        if known.carried and known.carried not in names:
+            payer = payers.setdefault(known.carried, name)
+            known = known._replace(carried="" if payer == name else payer)
+        judged[name] = result if known.is_open else known
+    return judged
