@@ -34,7 +34,7 @@ check = "entry_is"
 with = { at = "ros2_control/joint", values = { "@name" = "j", "command/@name" = ["position", "velocity"] } }
 """
 SENSOR = """\
-<sensor type="camera">
+<sensor name="eye" type="camera">
 <rate>30</rate>
 <camera><image><width>640</width></image></camera>
 </sensor>"""

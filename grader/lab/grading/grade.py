@@ -75,7 +75,10 @@ def grade(
     if any(result.is_lost for result in results):
         from grader.lab.grading.not_known import judge_known  # late: few elements are dropped
 
-        results = judge_known(rubric, robot_owner, results, wanted)
+        paying = {paid.payer for paid in meant.paid} if meant is not None else ()
+        results = judge_known(rubric, robot_owner, results, wanted, paying)
+        if meant is not None:  # hints begin with what it has
+            meant = meant._replace(results=judge_known(rubric, robot_owner, meant.results, wanted))
     results = without_gifts(results, submission)
     problems = _find_problems(rubric, submission, chosen, meant)
     evidence, other_pictures = _find_evidence(rubric, submission, chosen if is_whole else ())

@@ -12,18 +12,23 @@ from grader.ros.urdf.reader import read_with_dropped
 
 
 def judge_known(
-    rubric: Rubric, submission: Submission, results: tuple[Result, ...], wanted: Collection[str]
+    rubric: Rubric,
+    submission: Submission,
+    results: tuple[Result, ...],
+    wanted: Collection[str],
+    paying: Collection[str] = (),
 ) -> tuple[Result, ...]:
     """Return the results with those of what is known, where an element is dropped.
 
     The first criterion that is lost and needs what is not known pays; without one, the first that
-    is lost as written. No criterion is worse than as written.
+    is lost as written. No criterion is worse than as written, and those that are `paying` for
+    slips stay as they are.
     """
     known = _with_dropped(submission)
     if known is None:
         return results
     after = {result.criterion.id: result for result in decide(rubric, known, wanted)}
-    lost = [result for result in results if result.is_lost]
+    lost = [result for result in results if result.is_lost and result.criterion.id not in paying]
     judged = _with_payers(lost, after)
     is_paid = any(judged[result.criterion.id].carried for result in lost)
     for result in lost:
