@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from grader.base import markup
 from grader.base.slips import Slip, make_slip
 from grader.base.source import Source
-from grader.base.text import cut
+from grader.base.text import comment_spans, cut
 from grader.ros.xml.urdf_format import TAGS
 
 _MAX_SHOWN = 60  # characters of a tag
@@ -19,7 +19,6 @@ _BARE = re.compile(r"(?:^|(?<=\s))(?P<name>visual|collision|geometry|inertial)\s
 _END = re.compile(r"(?:^|(?<=\s))/(?P<name>[\w:.-]+)\s*>")
 _NAMED = re.compile(r"""<(?:link|joint)\s[^<>]*?name\s*=\s*["']([^"'<>]*)["']""")
 _ROBOT = re.compile(r"<robot(?=[\s>])")
-_COMMENT = re.compile(r"(?s)<!--(.*?)-->")
 _MARK_OF_COMMENT = re.compile("<!--|-->")
 _END_OF_COMMENT = re.compile(r"(?<!\s)\s*+(?:--\s*+>?|->|-)$")  # as it is misspelt
 _DISABLED = re.compile(r"(?i)\b(?:not?|todo|old|off|disabled|unused|removed|instead|later)\b")
@@ -96,17 +95,18 @@ def open_comment_slips(source: Source) -> Iterator[Slip]:
     there.
     """
     text = source.text
-    for comment in _COMMENT.finditer(text):
-        first, _, rest = comment[1].partition("\n")
+    for begin, end in comment_spans(text):
+        start = begin + len("<!--")
+        first, _, rest = text[start:end].partition("\n")
         first = first.rstrip()
         words = _END_OF_COMMENT.sub("", first)
         is_left = words == first and _DISABLED.search(words)
-        mark = _MARK_OF_COMMENT.search(text, comment.end())
+        mark = _MARK_OF_COMMENT.search(text, end + len("-->"))
         is_later = mark is not None and mark[0] == "-->"
         if is_left or is_later or "<" in first or not words.strip():
             continue
         if "<!--" in rest and _ELEMENT.search(rest):
-            start, line = comment.start(1), source.at(comment.start()).line
+            line = source.at(begin).line
             edit = source.edit(start + len(words), start + len(first), " -->")
             reaction = f"the comment of line {line} is not closed, so that elements are in it"
             yield make_slip((edit,), reaction, f"the comment ends in line {line}")

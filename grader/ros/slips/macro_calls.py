@@ -14,7 +14,7 @@ from grader.ros.xml.urdf_format import TAGS
 _MAX_SHOWN = 60  # characters of parameters
 _EXPRESSION = re.compile(r"\$\{([^{}]*)\}")
 _NAME = re.compile(r"[^\W\d]\w*")
-_EQUALS = re.compile(r"\s*:?=.*")
+_EQUALS = re.compile(r"(?<!\s)\s*+:?=.*")
 # a:1, a=:1 and a = : 1 for a:=1
 _COLON = re.compile(r"(?<![\w:])(?P<name>[^\W\d]\w*)(?:\s*=\s*:\s*|:(?![=\s]))")
 # , or ; between parameters, which xacro takes for a part of the name or of the default before it

@@ -26,7 +26,7 @@ _IN_BRACES = re.compile(r"\$?[{(]\s*(?P<inner>[^\W\d]\w*)\s*[})]|\$(?P<bare>[^\W
 _DEFINING = ("xacro:property", "xacro:arg", "xacro:macro")
 # The commands of launch files that xacro has by another name.
 _OF_LAUNCH = {"find-pkg-share": "find", "var": "arg"}
-_COMMAND = re.compile(r"\$\(\s*(?P<command>[\w-]+)\s+(?P<rest>[^()$]*)\)")
+_COMMAND = re.compile(r"\$\(\s*+(?P<command>[\w-]++)\s++(?P<rest>[^()$]*+)\)")
 _COMMANDS = ("find", "arg", "env", "optenv", "eval", "dirname", "cwd", "anon")
 _DISABLED = re.compile(r"<!--\s*(?P<tag><xacro:(?:include|property|arg)\s[^<>]*/>)\s*-->")
 

@@ -84,7 +84,7 @@ def refused_expression_slips(
     A `name` that is not known may be such a text where it is compared: ${side == left}.
     """
     word = re.escape(name)
-    compared = re.compile(rf"([=!]=\s*+){word}(?![\w.(\[])|(?<![\w.]){word}(?=\s*+[=!]=)")
+    compared = re.compile(rf"([=!]=\s*+){word}(?![\w.(\[])|(?<![\w.])\b{word}(?=\s*+[=!]=)")
     for value in list_values(source, start):
         if attribute not in (None, value.attribute.name) or "${" not in value.text:
             continue

@@ -168,7 +168,7 @@ class RobotSlips:
 def _without_separators(text: str) -> str:
     """Return a value of xacro without the separators that are outside of its expressions."""
     pieces = []
-    for piece in re.split(r"(\$\{[^}]*\})", text):
+    for piece in re.split(r"(\$\{[^}$]*+\})", text):
         is_expression = piece.startswith("${")
         pieces.append(piece if is_expression else re.sub("[,;]", " ", piece))
     return "".join(pieces)
