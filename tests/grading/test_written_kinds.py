@@ -6,10 +6,12 @@ import pytest
 
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.grade import grade
+from grader.lab.grading.not_known import _with_payers
 from grader.lab.grading.report import Report
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.edited import with_files
 from grader.lab.submission.opening import read_submission
+from tests.command_line import ROOT
 from tests.grading.written_kinds import WAYS, WrittenKind, work, written_kinds
 from tests.samples import LAB6
 
@@ -101,3 +103,30 @@ def test_a_value_that_xacro_refuses_is_one_value() -> None:
     lost = [result.criterion.id for result in report.results if result.is_lost]
     assert lost[0] == "urdf-loads"
     assert len(lost) <= 2
+
+
+def test_a_reading_that_earns_less_does_not_count() -> None:
+    """The robot of another lab passes what is not there: its wheel in a comment would fail."""
+    text = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
+    hidden = text.replace(
+        '<link name="right_wheel">', '<!-- the right wheel --\n<link name="right_wheel">'
+    ).replace("</robot>", "<!-- the end -->\n</robot>")
+    assert grade(
+        load_rubric("lab6"), read_submission(hidden.encode(), identity="r", path="r.urdf")
+    ).meant
+    assert (
+        grade(
+            load_rubric("arm"), read_submission(hidden.encode(), identity="r", path="r.urdf")
+        ).meant
+        is None
+    )
+
+
+def test_the_first_that_a_passing_criterion_carries_pays() -> None:
+    """Later ones are carried by it."""
+    results = grade(load_rubric("lab6"), work("lab6", "reference")).results
+    lost = results[:2]
+    known = [result._replace(carried="base-on-ground") for result in lost]
+    judged = _with_payers(lost, {result.criterion.id: result for result in known})
+    first, second = (result.criterion.id for result in lost)
+    assert (judged[first].carried, judged[second].carried) == ("", first)

@@ -208,16 +208,14 @@ class Problems:
 
         slips = RobotSlips(self.root, self.source, self.unresolved).at_places()
         fixes = {place: slip.fix for place, slip in slips.items() if slip.edits}
-        if self.robot is None:
-            return fixes
-        for names in find_meant_names(self.root, self.robot):
+        meant = find_meant_names(self.root, self.robot) if self.robot is not None else ()
+        for names in meant:
             edits: dict[Edit, None] = {}
             for name in names:
                 edits |= dict.fromkeys(self._edits_of(name))
             sentences = dict.fromkeys(name.sentence for name in names)
-            if edits:
-                fix = Fix(tuple(edits), enumerated([*sentences]))
-                fixes |= {(name.element, name.attribute): fix for name in names}
+            fix = Fix(tuple(edits), enumerated([*sentences]))
+            fixes |= {(name.element, name.attribute): fix for name in names if edits}
         return fixes
 
     def _edits_of(self, name: "MeantName") -> Edits:
@@ -227,9 +225,8 @@ class Problems:
             return next(iter(self.rewrites(index, name.attribute, (name.written, value))), ())
         source, start = self.source.element(index)
         there = markup.attribute(source.text, start, name.attribute)
-        if there is None or source.text[slice(*there.value)] != escaped(name.written):
-            return ()  # the tag is broken
-        return (with_attribute(source, start, name.attribute, value),)
+        is_whole = there is not None and source.text[slice(*there.value)] == escaped(name.written)
+        return (with_attribute(source, start, name.attribute, value),) if is_whole else ()
 
     def duplicate(self, kind: Kind, element: Element, first: Element) -> None:
         """Add that an element has the name of an earlier one of its kind."""

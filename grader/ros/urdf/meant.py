@@ -183,8 +183,8 @@ def _pasted_children(root: Element, robot: Robot) -> Iterator[MeantName]:
         end = joint.find("child")
         if end is not None and end.get("link") == doubled[0]:
             ends.append((lonely[0] in (joint.get("name") or ""), index, end))
-    if ends:
-        yield MeantName(max(ends)[2], "link", lonely[0], "the child")
+    for _, _, end in sorted(ends, key=lambda placed: placed[:2])[-1:]:
+        yield MeantName(end, "link", lonely[0], "the child")
 
 
 def _repeated_names(root: Element) -> Iterator[MeantName]:
