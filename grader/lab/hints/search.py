@@ -192,7 +192,10 @@ def _has_new_build_errors(before: Submission, after: Submission) -> bool:
 
 
 def _count_connections(submission: Submission | None) -> Counter[tuple[str, str]]:
-    """Return how many connections of each kind each launch file makes."""
+    """Return how many connections of each kind the launch files of each folder make.
+
+    An edit may rename a file.
+    """
     from grader.workspace.api import connections_in, launch_graph  # late: few edits need them
 
     counts: Counter[tuple[str, str]] = Counter()
@@ -201,7 +204,8 @@ def _count_connections(submission: Submission | None) -> Counter[tuple[str, str]
         for _, launch in submission.workspace.launches.roots:
             path = launch.source.path
             graph = launch_graph(submission.workspace, path)
-            counts.update((path, connection.kind) for connection in connections_in(graph))
+            folder = path.rpartition("/")[0]
+            counts.update((folder, connection.kind) for connection in connections_in(graph))
     return counts
 
 
