@@ -10,8 +10,6 @@ from itertools import chain
 from math import nan
 from typing import TYPE_CHECKING, TypeVar
 
-from grader.base import markup
-from grader.base.element_edits import escaped, with_attribute
 from grader.base.errors import MissingElement
 from grader.base.names import MAX_GUESSES, closest, did_you_mean
 from grader.base.problems import NO_FIXES, Effect, Fix, Fixes, Kind, Problem
@@ -220,6 +218,9 @@ class Problems:
 
     def _edits_of(self, name: "MeantName") -> Edits:
         """Return the edits that write a name as it is meant."""
+        # Late: few names are repeated or pasted.
+        from grader.base import markup
+
         index, value = self._indices[name.element], escaped(name.meant)
         if self.rewrites is not None:
             return next(iter(self.rewrites(index, name.attribute, (name.written, value))), ())
