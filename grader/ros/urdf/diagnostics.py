@@ -220,6 +220,7 @@ class Problems:
         """Return the edits that write a name as it is meant."""
         # Late: few names are repeated or pasted.
         from grader.base import markup
+        from grader.base.element_edits import escaped, with_attribute
 
         index, value = self._indices[name.element], escaped(name.meant)
         if self.rewrites is not None:
