@@ -264,15 +264,14 @@ def _read_shape(
     material = inside.get("material") if is_visual else None
     if material is not None and material.get("name") is None:
         reader.fail("<material> in a visual has no name", material)
-    if geometry is None or (reader.failed and not problems.keeps_dropped):
+    errors = reader.unknown.items()
+    of_shape = {name: error for (tag, name), error in errors if tag != "origin"}
+    is_kept = problems.keeps_dropped and geometry and of_shape.keys() <= {*geometry._fields}
+    if geometry is None or (reader.failed and not is_kept):
         return None
     if reader.failed:
         from grader.ros.urdf.not_known import with_unknown  # late: few elements are dropped
 
-        errors = reader.unknown.items()
-        of_shape = {name: error for (tag, name), error in errors if tag != "origin"}
-        if not of_shape.keys() <= {*geometry._fields}:
-            return None
         geometry = with_unknown(geometry, of_shape)
         of_origin = {name: error for (tag, name), error in errors if tag == "origin"}
         origin = with_unknown(origin, of_origin)

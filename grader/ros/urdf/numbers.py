@@ -92,6 +92,9 @@ def readable_numbers(text: str, count: int) -> list[str] | None:
 
     There may be twice as many, as in a pose. They are separated by any white space or by commas,
     with decimal commas, or are computed, as in pi/2.
+
+    >>> readable_numbers("0,1, 0, 2", 3), readable_numbers("0 0 1", 3)
+    (['0.1', '0', '2'], None)
     """
     with suppress(NumberError):
         if len(numbers(text)) == count:
