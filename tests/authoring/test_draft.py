@@ -301,7 +301,7 @@ NAMED: dict[str, tuple[str, str, str]] = {
     "a joint without a state": (
         "",
         '<command_interface name="velocity"/>\n        <state_interface name="position"/>\n        <state_interface name="velocity"/>\n      </joint>\n      <joint',
-        '<command_interface name="velocity"/>\n      </joint>\n      <joint',
+        '<command_interface name="velocity"/>\n        <state_interface name="position"/>\n      </joint>\n      <joint',
     ),
     "which joint is left": (
         "<gazebo><plugin><left_joint>left_wheel_joint</left_joint><right_joint>right_wheel_joint</right_joint></plugin></gazebo>",

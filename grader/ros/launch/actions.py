@@ -90,7 +90,7 @@ class NotIncluded(NamedTuple):
 Include = Callable[[str, Context], NotIncluded | None]
 
 
-class CallFunction(Protocol):
+class _CallFunction(Protocol):
     """Calls a function of the file; without arguments, with ones that are not known."""
 
     def __call__(
@@ -113,7 +113,7 @@ class ActionVisitor:
 
     findings: Findings
     include: Include
-    call_function: CallFunction
+    call_function: _CallFunction
     visited: set[Call] = field(default_factory=set)  # what is part of the description
     executed: dict[Call, bool | None] = field(
         default_factory=dict
