@@ -12,9 +12,9 @@ from grader.base.element_edits import edited
 from grader.base.problems import NO_FIXES, Fix, Fixes, Problem
 from grader.base.source import Edit
 from grader.files.tree import make_tree, overlaid
-from grader.report.formats import Format, InspectFormat
+from grader.report.formats import InspectFormat
 from grader.workspace.api import read_workspace
-from tests.command_line import run, run_process
+from tests.command_line import run
 from tests.samples import ROOT
 
 _SAMPLE = ROOT / "submissions/diffdrive/joint-misspelt"
@@ -98,19 +98,6 @@ def test_fixes_are_computed_once_and_when_they_are_asked_for() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("form", Format)
-@pytest.mark.parametrize("level", ["none", "place", "cause"])
-def test_no_report_asks_for_a_fix(
-    form: Format, level: str, sample: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """No format of a report has one below the level `edit`, where hints prove edits first."""
-    words = ("grade", sample, "--rubric", "diffdrive", "--hints", level, "--format", form)
-    expected = run(words).stdout
-    monkeypatch.setattr(Fixes, "__iter__", _no_fix)
-    assert run(words).stdout == expected
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("form", InspectFormat)
 def test_no_inspection_asks_for_a_fix(
     form: InspectFormat, sample: Path, monkeypatch: pytest.MonkeyPatch
@@ -119,18 +106,6 @@ def test_no_inspection_asks_for_a_fix(
     expected = run(words).stdout
     monkeypatch.setattr(Fixes, "__iter__", _no_fix)
     assert run(words).stdout == expected
-
-
-@pytest.mark.exhaustive
-def test_no_class_asks_for_a_fix(sample: Path, tmp_path: Path) -> None:
-    """Neither the command nor the processes that grade."""
-    (tmp_path / "code").mkdir()
-    (tmp_path / "code/sitecustomize.py").write_text(_STOPPING)
-    words = ["batch", sample.parent, "--gradebook", tmp_path / "book", "--jobs", "1"]
-    words += ["--rubric", "diffdrive", "--report-format", "html", "--reports", tmp_path / "reports"]
-    done = run_process([str(word) for word in words], b"", {"PYTHONPATH": str(tmp_path / "code")})
-    assert done.returncode == 0, done.stderr.decode()
-    assert "wheel_left_joint" in next((tmp_path / "reports").rglob("*.html")).read_text()
 
 
 @pytest.mark.parametrize(
