@@ -2,7 +2,7 @@
 
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from itertools import islice
 from multiprocessing import Pool
@@ -12,11 +12,13 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from grader.lab.authoring.rubric_test import Trial
+from grader.lab.grading.deciding import decide
 from grader.lab.grading.grade import grade
-from grader.lab.grading.report import Result
+from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.rubric import Rubric as GraderRubric
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import read_submission
+from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.reader import read_urdf
 from grader.ros.xml.xml_problems import RECOVERED
@@ -58,9 +60,9 @@ def compared(
         urdf = report.meant.submission.urdf
         assert isinstance(urdf, Read)
         text = urdf.data
-        results = report.meant.results
+        results = _as_ros_reads_it(report, report.meant.submission)
     elif results is None:
-        results = report.results
+        results = _as_ros_reads_it(report, report.submission)
     found = {result.criterion.id: result for result in results}
     try:
         opinions = own.opinions(Robot(text))
@@ -78,6 +80,11 @@ def compared(
     verdicts = [(key, *_agreement(found[key], opinion)) for key, opinion in opinions.items()]
     different = [f"{key}: {text}" for key, kind, text in verdicts if kind == "different"]
     return Comparison(name, Counter(kind for _, kind, _ in verdicts), different)
+
+
+def _as_ros_reads_it(report: Report, submission: Submission) -> Sequence[Result]:
+    """Return the results without what is judged as written of elements that ROS 2 drops."""
+    return [*decide(report.rubric, submission, {it.criterion.id for it in report.results})]
 
 
 def _agreement(result: Result, opinion: Opinion) -> tuple[str, str]:
