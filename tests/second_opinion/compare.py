@@ -60,9 +60,9 @@ def compared(
         urdf = report.meant.submission.urdf
         assert isinstance(urdf, Read)
         text = urdf.data
-        results = _as_ros_reads_it(report, report.meant.submission)
+        results = as_ros_reads_it(report, report.meant.submission)
     elif results is None:
-        results = _as_ros_reads_it(report, report.submission)
+        results = as_ros_reads_it(report, report.submission)
     found = {result.criterion.id: result for result in results}
     try:
         opinions = own.opinions(Robot(text))
@@ -82,7 +82,7 @@ def compared(
     return Comparison(name, Counter(kind for _, kind, _ in verdicts), different)
 
 
-def _as_ros_reads_it(report: Report, submission: Submission) -> Sequence[Result]:
+def as_ros_reads_it(report: Report, submission: Submission) -> Sequence[Result]:
     """Return the results without what is judged as written of elements that ROS 2 drops."""
     return [*decide(report.rubric, submission, {it.criterion.id for it in report.results})]
 
