@@ -127,6 +127,6 @@ def test_the_first_that_a_passing_criterion_carries_pays() -> None:
     results = grade(load_rubric("lab6"), work("lab6", "reference")).results
     lost = results[:2]
     known = [result._replace(carried="base-on-ground") for result in lost]
-    judged = _with_payers(lost, {result.criterion.id: result for result in known})
+    judged = _with_payers(lost, known)
     first, second = (result.criterion.id for result in lost)
     assert (judged[first].carried, judged[second].carried) == ("", first)

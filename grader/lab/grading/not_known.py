@@ -1,6 +1,6 @@
 """Judge what is written of elements that ROS 2 drops, because a value of them is not known."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 
 from grader.lab.grading.deciding import decide
@@ -27,17 +27,11 @@ def judge_known(
     known = _with_dropped(submission)
     if known is None:
         return results
-    after = {result.criterion.id: result for result in decide(rubric, known, wanted)}
     lost = [result for result in results if result.is_lost and result.criterion.id not in paying]
-    judged = _with_payers(lost, after)
-    is_paid = any(judged[result.criterion.id].carried for result in lost)
-    for result in lost:
-        outcome = judged[result.criterion.id].outcome
-        is_at_place = outcome.status == "failed" and outcome.location is not None
-        is_paid |= is_at_place and outcome.mistake != result.outcome.mistake
-    passing = [result for result in lost if not judged[result.criterion.id].is_lost]
-    if passing and not is_paid:
-        judged[passing[0].criterion.id] = passing[0]
+    judged = _with_payers(lost, decide(rubric, known, wanted))
+    if not any(_pays(judged[result.criterion.id], result) for result in lost):
+        for result in [each for each in lost if not judged[each.criterion.id].is_lost][:1]:
+            judged[result.criterion.id] = result
     return tuple(judged.get(result.criterion.id, result) for result in results)
 
 
@@ -52,18 +46,26 @@ def _with_dropped(submission: Submission) -> Submission | None:
     return replace(submission, urdf=urdf._replace(reading=urdf.reading._replace(robot=robot)))
 
 
-def _with_payers(lost: Collection[Result], after: Mapping[str, Result]) -> dict[str, Result]:
+def _pays(known: Result, written: Result) -> bool:
+    """Return whether a criterion is lost for what is not known, or another one for which it is."""
+    outcome = known.outcome
+    is_at_place = outcome.status == "failed" and outcome.location is not None
+    return bool(known.carried) or (is_at_place and outcome.mistake != written.outcome.mistake)
+
+
+def _with_payers(lost: Collection[Result], known: Iterable[Result]) -> dict[str, Result]:
     """Return the results of lost criteria on what is known, by their ids.
 
     If the criterion that carries others passes as written, the first of these pays.
     """
+    after = {result.criterion.id: result for result in known}
     names = {result.criterion.id for result in lost}
     payers: dict[str, str] = {}
     judged: dict[str, Result] = {}
     for result in lost:
-        name, known = result.criterion.id, after[result.criterion.id]
-        if known.carried and known.carried not in names:
-            payer = payers.setdefault(known.carried, name)
-            known = known._replace(carried="" if payer == name else payer)
-        judged[name] = result if known.is_open else known
+        name, now = result.criterion.id, after[result.criterion.id]
+        if now.carried and now.carried not in names:
+            payer = payers.setdefault(now.carried, name)
+            now = now._replace(carried="" if payer == name else payer)
+        judged[name] = result if now.is_open else now
     return judged

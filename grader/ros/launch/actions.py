@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Protocol
 
 from grader.ros.installation.places import PREFIX, SHARE
-from grader.ros.launch.call_arguments import PARTIAL, describe_kind, items_in
+from grader.ros.launch.call_arguments import describe_kind, items_in
 from grader.ros.launch.components import load_by_command, load_components, start_container
 from grader.ros.launch.launch_classes import (
     CONDITION,
@@ -95,7 +95,7 @@ class _CallFunction(Protocol):
 
     def __call__(
         self,
-        function: Function,
+        function: Function | Call,
         at: Position,
         args: Sequence[Value] | None,
         context: Context,
@@ -162,11 +162,6 @@ class ActionVisitor:
 
     def visit(self, value: Value, context: Context, when: bool | None, at: Position) -> None:
         """Visit an action, or each of those of which it is one."""
-        if isinstance(value, Unknown) and value.candidates:
-            for candidate in value.candidates:
-                for action in listed(candidate) if candidate is not None else ():
-                    self.visit(action, context, when and None, at)
-            return
         self.steps += 1
         is_left = context.budget.take_of_whole(_OF_ACTION)
         if self.depth > _MAX_DEPTH or self.steps > _MAX_ACTIONS or not is_left:
@@ -175,6 +170,17 @@ class ActionVisitor:
             )
             return
         self.depth += 1
+        if isinstance(value, Unknown) and value.candidates:
+            for candidate in value.candidates:
+                for action in listed(candidate) if candidate is not None else ():
+                    self.visit(action, context, when and None, at)
+        else:
+            self._visit_action(value, context, when, at)
+        self.depth -= 1
+
+    def _visit_action(
+        self, value: Value, context: Context, when: bool | None, at: Position
+    ) -> None:
         try:
             if isinstance(value, Unknown):
                 raise value.as_signal(value.at)
@@ -188,7 +194,6 @@ class ActionVisitor:
         else:
             self.visited.add(value)
             self._execute(value, context, self._holds(value, context, when))
-        self.depth -= 1
 
     def add_form(self, signal: EvaluationSignal, at: Position, when: bool | None) -> None:
         """Add an error in the form of a description.
@@ -546,13 +551,11 @@ def _call_opaque_function(
     visitor: ActionVisitor, call: Call, context: Context, when: bool | None
 ) -> None:
     function, args = call.kwargs["function"], call.kwargs.get("args") or []
-    named, first = call.kwargs.get("kwargs") or {}, list[Value]()
-    if isinstance(function, Call) and function.name == PARTIAL:
-        named, [function, *first] = {**function.kwargs, **named}, function.args
+    named = call.kwargs.get("kwargs") or {}
     is_known = isinstance(args, list | tuple) and isinstance(named, dict)
-    if not isinstance(function, Function) or not is_known:
+    if not isinstance(function, Function | Call) or not is_known:
         raise Undetermined("the result of this OpaqueFunction is not evaluated", call.at)
-    arguments = (*first, Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
+    arguments = (Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
     given = arguments if when else None
     returned = visitor.call_function(function, call.at, given, context, named)
     if isinstance(returned, Unknown) and not returned.candidates:

@@ -426,8 +426,9 @@ class _PythonLaunchFile:
         packages_last = sorted(
             known.items(), key=lambda export: (-export[0].count("."), export[0] in packages)
         )
+        functions = self._functions()
         self.interpreter = Interpreter(
-            self._functions(),
+            functions,
             names,
             stand_ins=(PREFIX, HOME),
             exports=dict(packages_last),
@@ -438,7 +439,7 @@ class _PythonLaunchFile:
 
     def call(
         self,
-        function: Function,
+        function: Function | Call,
         at: Position,
         args: Sequence[Value] | None,
         context: Context,

@@ -458,15 +458,20 @@ class Evaluation(Expressions):
         ):
             made = py.Call("", [right], {}, make_position(node))
             return self.call_value(py.BoundMethod(left, "__truediv__"), made)
-        if isinstance(node.op, ast.Add) and self.goes_on:
-            match left, right:
-                case (list(), py.Unknown()) | (py.Unknown(), list()):
-                    return [*spread(left), *spread(right)]
-        for value, other in ((left, right), (right, left)):
-            is_text = isinstance(value, py.Unknown) and value.is_text
-            if is_text and isinstance(node.op, ast.Add) and _is_textual(other):
-                return value  # a longer text that is not known
-        return operate(node.op, left, right, self.budget)
+        added = self._add_open(left, right) if isinstance(node.op, ast.Add) else None
+        return operate(node.op, left, right, self.budget) if added is None else added
+
+    def _add_open(self, left: py.Value, right: py.Value) -> py.Value:
+        """Return the sum of two lists or texts of which one is not known; None for other values."""
+        match left, right:
+            case (list(), py.Unknown()) | (py.Unknown(), list()) if self.goes_on:
+                return [*spread(left), *spread(right)]
+            case (py.Unknown(is_text=True) as text, str() | py.Unknown(is_text=True)) | (
+                str(),
+                py.Unknown(is_text=True) as text,
+            ):
+                return text  # a longer one, which is not known either
+        return None
 
     def _ifexp(self, node: ast.IfExp, scope: py.Scope) -> py.Value:
         """Return the value of a conditional expression: one of both where the condition is open."""
@@ -497,10 +502,6 @@ def spread(value: py.Value) -> list[py.Value]:
         if isinstance(candidate, list | tuple):
             items += [py.one_of([item], value.reason, value.at) for item in candidate]
     return items if value.candidates else [value]
-
-
-def _is_textual(value: py.Value) -> bool:
-    return isinstance(value, str) or (isinstance(value, py.Unknown) and value.is_text)
 
 
 def _cannot_fail(node: ast.expr) -> bool:

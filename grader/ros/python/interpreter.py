@@ -72,6 +72,7 @@ class _RaiseFlow(py.EvaluationSignal):
 # What a statement may leave that is not evaluated, so that what follows is not known.
 _LEAVING = (ast.Return, ast.Global, ast.Nonlocal, ast.Yield, ast.YieldFrom, ast.Await)
 _LEAVING_LOOPS = (ast.Break, ast.Continue)
+_COPIED = 8  # names of a scope, which are looked at or copied for one part of the budget
 _OF_BRANCHES = "which of these branches runs is not evaluated"
 
 
@@ -117,13 +118,6 @@ def _full_name(node: ast.expr) -> str:
 def _reads_environment(node: ast.AST) -> bool:
     nodes = [each for each in walk(node) if isinstance(each, ast.Name | ast.Attribute)]
     return any(_full_name(each) in _ENVIRONMENTS for each in nodes)
-
-
-def _without_end(node: ast.Try) -> ast.Try:
-    """Return a try statement without its finally."""
-    rest = copy(node)
-    rest.finalbody = []
-    return rest
 
 
 def _fits(subject: py.Value, pattern: ast.pattern) -> bool | None:
@@ -195,24 +189,27 @@ class Interpreter(Evaluation):
 
     def call_from_outside(
         self,
-        function: py.Function,
+        function: py.Function | py.Call,
         at: Position,
         args: Sequence[py.Value] | None = (),
         named: Mapping[str, py.Value] = _NO_NAMES,
     ) -> py.Value:
-        """Return the value of a call of one of the file's functions. It never raises.
+        """Return the value of a call of a function of the file, or of partial() of one.
+
+        It never raises.
 
         With `args` None, the arguments are unknown, and no error or doubt in the call counts: it
         may never happen.
         """
-        given = function.parameters
-        count = len([*given.posonlyargs, *given.args]) - len(given.defaults)
+        count = 1
+        if isinstance(function, py.Function):
+            given = function.parameters
+            count = len([*given.posonlyargs, *given.args]) - len(given.defaults)
         event: list[py.Value] = [py.Unknown("an event is known only at run time", at)] * count
         recorded, doubt, unread = list(self.errors), self.doubt, list(self.unread)
         try:
-            return self.call_function(
-                function, py.Call("", event if args is None else list(args), dict(named), at)
-            )
+            made = py.Call("", event if args is None else list(args), dict(named), at)
+            return self.call_value(function, made)
         except (py.EvaluationSignal, RecursionError) as error:
             return self._stop(error, at)
         finally:
@@ -256,9 +253,8 @@ class Interpreter(Evaluation):
         names = names_bound(parts)
         if not self.goes_on or "*" in names or any(isinstance(part, leaving) for part in parts):
             raise py.Undetermined(unknown.reason, unknown.at, is_final=True)
-        for part in parts:
-            if isinstance(part, ast.Name) and part.id not in names:
-                self._make_reached_open(part.id, scope, unknown)
+        for name in sorted({part.id for part in parts if isinstance(part, ast.Name)} - names):
+            self._make_reached_open(name, scope, unknown)
         self.unread.append(self.doubted(unknown))
         scope.names.update(dict.fromkeys(names, unknown))
 
@@ -268,20 +264,22 @@ class Interpreter(Evaluation):
             value = scope.find(name)
             self.make_open(value, unknown)
             if isinstance(value, py.Function):
+                self.budget.charge(len(value.scope.names) // _COPIED)
                 for shared in [*value.scope.names.values()]:
                     if isinstance(shared, list):
                         self.make_open(shared, unknown)
 
     def _perhaps(
-        self, branches: Sequence[Callable[[], None]], reason: py.EvaluationSignal, scope: py.Scope
+        self, branches: Sequence[Callable[[], None]], reason: py.Undetermined, scope: py.Scope
     ) -> None:
         """Run branches of which one runs, and keep as open what they do not agree on.
 
         Raises _ReturnFlow where all return, and Undetermined where branches are not evaluated.
         """
         at = reason.at or self.at
-        if not self.goes_on or (isinstance(reason, py.Undetermined) and reason.is_final):
+        if not self.goes_on or reason.is_final:
             raise py.Undetermined(str(reason), at, is_final=True)
+        self.budget.charge(len(branches) * len(scope.names) // _COPIED)
         before, ends, returned = dict(scope.names), list[dict[str, py.Value]](), list[py.Value]()
         self.possible += 1
         try:
@@ -463,12 +461,11 @@ class Interpreter(Evaluation):
         if others:  # are as a statement in the statement
             body = [ast.copy_location(ast.With(items=others, body=node.body), node)]
         value, target = self.evaluate(first.context_expr, scope), first.optional_vars
-        # Such as open() of a file that does not exist.
-        has_failed = isinstance(value, py.Unknown) and value.follows_error
         if isinstance(value, py.Call):
             self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, self.at))
-        is_open = self.goes_on and isinstance(value, py.Unknown)
-        if not (isinstance(value, py.Call | StringIO) or has_failed or is_open):
+        # open() of a file that does not exist has failed.
+        is_open = isinstance(value, py.Unknown) and (value.follows_error or self.goes_on)
+        if not (isinstance(value, py.Call | StringIO) or is_open):
             raise py.Undetermined("this use of with is not evaluated", self.at, is_final=True)
         if target is not None:
             self.bind(target, value, scope)
@@ -522,8 +519,10 @@ class Interpreter(Evaluation):
     def _try(self, node: ast.Try, scope: py.Scope) -> None:
         """Run a body, and the handler of what it certainly raises; stop where it may raise more."""
         if node.finalbody:
+            rest = copy(node)
+            rest.finalbody = []
             try:
-                self._try(_without_end(node), scope)
+                self._try(rest, scope)
             finally:
                 self._block(node.finalbody, scope)
             return
@@ -669,16 +668,19 @@ class Interpreter(Evaluation):
                 values.append(self.evaluate(node, scope))
                 continue
             value = self.evaluate(node.value, scope)
-            if isinstance(value, py.Unknown) and self.goes_on and not is_call:
-                values += spread(value)
-                continue
             try:
-                values += self.budget.items(value)
+                values += self.budget.items(value) if is_call else self._list_items(value)
             except py.Undetermined as error:
                 raise py.Undetermined(
                     str(error), error.at or make_position(node), is_final=True
                 ) from None
         return values
+
+    def _list_items(self, value: py.Value) -> list[py.Value]:
+        """Return the items of a value; of one that is not known, those that may be there."""
+        if self.goes_on and isinstance(value, py.Unknown):
+            return spread(value)
+        return list(self.budget.items(value))
 
     def _separated(self, node: ast.expr) -> list[ast.expr]:
         """Return an element, or the two elements that are meant where a comma is missing.
@@ -798,9 +800,7 @@ class Interpreter(Evaluation):
         if not isinstance(before, py.PLAIN):
             refuse(before, "this value is not supported")
         if isinstance(before, list) and isinstance(node.op, ast.Add):
-            is_open = self.goes_on and isinstance(value, py.Unknown)
-            items = spread(value) if is_open else list(self.budget.items(value))
-            before.extend(map(self.perhaps, items))
+            before.extend(map(self.perhaps, self._list_items(value)))
             self.budget.measure(before, "holds")
         elif isinstance(before, list | dict):
             raise py.Undetermined("this operator is not supported")

@@ -178,7 +178,7 @@ def find_meant_module(module: str, known: Collection[str]) -> str | None:
     if not below or module in known:
         return None
     meant = near(module, [other for other in known if other.startswith(f"{top}.")])
-    is_whole = top in ("launch", "launch_ros") and top in known and not below.startswith("_")
+    is_whole = top in {"launch", "launch_ros"}.intersection(known) and not below.startswith("_")
     is_lacking = f"{top}.{below.partition('.')[0]}" not in known
     return "" if meant is None and is_whole and is_lacking else meant
 

@@ -26,6 +26,7 @@ MAX_TEXT = 100_000  # characters
 MAX_PARTS = 20_000  # of a value, with all that it contains
 MAX_BITS = 4_096  # of an integer
 _MAX_MESSAGE = 1_000  # characters
+_MAX_CANDIDATES = 64  # of a value; of one with more, none is kept
 _MAX_KEY = 2**31  # keys that are larger could all have one hash
 _EMPTY: dict[str, str] = {}
 VIEWS: tuple[Any, ...] = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))
@@ -161,12 +162,15 @@ class InertValue(Unknown):
 
 
 def one_of(values: Sequence[Value], reason: str, at: "Position") -> Unknown:
-    """Return a value that is one of several, or that may not be there where it is the only one."""
-    unknown = Unknown(reason, at)
+    """Return a value that is one of several; if only one is given, it may not be there."""
+    unknown, candidates = Unknown(reason, at), dict[int, Value]()  # by identity: each once
     for value in values:
         is_open = isinstance(value, Unknown) and value.candidates
-        unknown.candidates += value.candidates if is_open else (value,)
-    unknown.is_text = all(isinstance(value, str) for value in unknown.candidates)
+        for candidate in value.candidates if is_open else (value,):
+            candidates[id(candidate)] = candidate
+    unknown.is_text = all(isinstance(value, str) for value in candidates.values())
+    if len(candidates) <= _MAX_CANDIDATES:
+        unknown.candidates = tuple(candidates.values())
     return unknown
 
 

@@ -57,16 +57,22 @@ def _declared(macro: XacroNode, calls: Iterable[XacroNode]) -> Iterator[str]:
     for way in (_COLON.sub(r"\g<name>:=", params), separated):
         if way.split() != words:
             yield " ".join(way.split())
+    yield from _named_in_calls(macro, calls, words)
+
+
+def _named_in_calls(
+    macro: XacroNode, calls: Iterable[XacroNode], words: list[str]
+) -> Iterator[str]:
+    """Yield the parameters with the names that calls give and the macro uses."""
     names = [_EQUALS.sub("", word) for word in words]
     given = dict.fromkeys(chain.from_iterable(call.attributes for call in calls))
     used = _list_used(macro)
     absent = [name for name in given if name not in names]
     if absent and used.issuperset(absent):
         yield " ".join((*words, *absent))
-        unused = [name for name in names if name not in given and name not in used]
+        unused = [name for name in names if name not in {*given, *used}]
         if len(absent) == len(unused) == 1:
-            index = names.index(unused[0])
-            yield " ".join((*words[:index], absent[0], *words[index + 1 :]))
+            yield _replace_word(words, words[names.index(unused[0])], absent[0])
 
 
 def _list_used(macro: XacroNode) -> set[str]:
@@ -78,6 +84,12 @@ def _list_used(macro: XacroNode) -> set[str]:
     return names
 
 
+def _replace_word(words: list[str], word: str, new: str) -> str:
+    """Return parameters with a new word in place of the first that is the other one."""
+    index = words.index(word)
+    return " ".join((*words[:index], new, *words[index + 1 :]))
+
+
 def _starred(macro: XacroNode, calls: Iterable[XacroNode]) -> Iterator[str]:
     """Yield the parameters with * or ** before the name of a block that the macro inserts."""
     inserted = dict.fromkeys(
@@ -86,10 +98,9 @@ def _starred(macro: XacroNode, calls: Iterable[XacroNode]) -> Iterator[str]:
     children = {child.tag for call in calls for child in call.elements}
     words = macro.attributes["params"].split()
     for name in inserted:
-        stars = "**" if name in children and name not in TAGS else "*"
+        stars = "**" if name in children - TAGS.keys() else "*"
         if name in words:
-            index = words.index(name)
-            yield " ".join((*words[:index], f"{stars}{name}", *words[index + 1 :]))
+            yield _replace_word(words, name, f"{stars}{name}")
         elif children and {f"*{name}", f"**{name}"}.isdisjoint(words):
             yield " ".join((*words, f"{stars}{name}"))
 

@@ -69,22 +69,26 @@ def name_in_braces_slips(nodes: Iterable[XacroNode]) -> Iterator[Slip]:
             yield make_slip([edit], reaction, f"the name {name} is read as {meant}")
 
 
+def _meant_word(word: str, name: str, arguments: Sequence[str]) -> tuple[str, str | None]:
+    """Return the word of a command with a name that is wrong, and the one that is meant."""
+    if word not in _COMMANDS:
+        return word, _OF_LAUNCH.get(word) or near(word, ("find", "arg"))
+    return name, near(name, arguments) if word == "arg" and name not in arguments else None
+
+
 def command_slips(nodes: Sequence[XacroNode]) -> Iterator[Slip]:
     """Yield the commands and arguments in $() that can only be others: $(find-pkg-share x)."""
     arguments = [node.attributes.get("name", "") for node in nodes if node.tag == "xacro:arg"]
     by_words: dict[tuple[str, str], list[Edit]] = {}
     for value in list_all_values(nodes):
         for match in _COMMAND.finditer(value.text):
-            word, name = match["command"], match["rest"].strip()
-            meant = None
-            if word not in _COMMANDS:
-                meant = _OF_LAUNCH.get(word) or near(word, ("find", "arg"))
-            elif word == "arg" and name not in arguments:
-                word, meant = name, near(name, arguments)
+            name = match["rest"].strip()
+            word, meant = _meant_word(match["command"], name, arguments)
             if meant is not None:
+                start, end = match.span()
                 changed = match[0].replace(word, meant, 1)
-                new = f"{value.text[: match.start()]}{changed}{value.text[match.end() :]}"
-                by_words.setdefault((word, meant), []).append(value.edit(new))
+                edit = value.edit(f"{value.text[:start]}{changed}{value.text[end:]}")
+                by_words.setdefault((word, meant), []).append(edit)
     for (word, meant), edits in by_words.items():
         yield make_slip(edits, f"xacro has no {word}", f"{word} is read as {meant}")
 

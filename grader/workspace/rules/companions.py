@@ -97,19 +97,19 @@ def _same_names(workspace: Workspace) -> Mismatches:
         named = {node.location for node in launch.nodes if node.node_name}
         first: dict[str, GraphNode] = {}
         for node in graph.nodes:
-            if node.location not in named or node.doubt or not node.name:
-                continue
-            before = first.setdefault(node.name, node)
-            if before is node:
-                continue
-            other = f"the other one is at {before.location.file_and_line}"
-            if node.process is not None and before.process == node.process:
-                other = f"the name is for both nodes of {node.program}"
-            message = (
-                f"two nodes are named {node.name}: their parameters and services cannot be told "
-                f"apart; {other}"
-            )
-            yield warning(_NODE_NAME, message, node.location, before.location)
+            if node.location in named and node.name and not node.doubt:
+                before = first.setdefault(node.name, node)
+                if before is not node:
+                    message = _describe_same_name(node, before)
+                    yield warning(_NODE_NAME, message, node.location, before.location)
+
+
+def _describe_same_name(node: GraphNode, before: GraphNode) -> str:
+    other = f"the other one is at {before.location.file_and_line}"
+    if node.process is not None and before.process == node.process:
+        other = f"the name is for both nodes of {node.program}"
+    message = f"two nodes are named {node.name}: their parameters and services cannot be told"
+    return f"{message} apart; {other}"
 
 
 def _broadcasters(workspace: Workspace) -> set[str]:

@@ -450,14 +450,26 @@ def _needed_states(
     for kind in _entries(section, "state_interfaces"):
         for joint in _entries(section, "joints"):
             yield kind.text or "", joint.text or "", kind.location
+    yield from _feedback_states(controller, section)
+
+
+def _small_text(section: YamlNode, key: str) -> str:
+    """Return the text of a parameter in small letters; empty where it is not given."""
+    node = section.get(key)
+    return (node.text or "").lower() if node is not None else ""
+
+
+def _feedback_states(
+    controller: Controller, section: YamlNode
+) -> Iterator[tuple[str, str, Location]]:
+    """Yield the same of the feedback that a type of controllers reads of its own."""
     feedback = controller_row(controller.type.text).feedback
     if feedback is None:
         return
-    switch, other = section.get(feedback.switch), section.get(feedback.unless)
-    kinds = {"true": feedback.on, "false": feedback.off}
-    kind_read = kinds.get((switch.text or "").lower(), "") if switch is not None else feedback.on
-    is_off = other is None or (other.text or "").lower() == "false"
-    for key in feedback.joints if kind_read and is_off else ():
+    kinds = {"": feedback.on, "true": feedback.on, "false": feedback.off}
+    kind_read = kinds.get(_small_text(section, feedback.switch), "")
+    is_read = _small_text(section, feedback.unless) in ("", "false")
+    for key in feedback.joints if kind_read and is_read else ():
         for joint in _entries(section, key):
             yield kind_read, joint.text or "", joint.location
 

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.package.package import Package
 from grader.workspace.graph.graph import make_graph
 from grader.workspace.graph.lifecycle import (
     LIFECYCLE_MANAGERS,
@@ -50,10 +52,10 @@ def inactive_node_facts(workspace: Workspace) -> Iterator[Fact]:
         return
     for package, node in nodes:
         name = workspace.code.find_name(node)
-        given = workspace.parameters.given_to(package, node)
-        is_open = given.unknown or name is None or _STARTS_ITSELF in given.values
         is_of_person = not managed and workspace.find_package(node) is not None
-        if node.when is True and not (is_open or is_of_person) and name not in managed:
+        if name in managed or is_of_person or _may_be_open(workspace, package, node):
+            continue
+        if node.when is True and name is not None:
             message = (
                 f"nothing configures and activates the lifecycle node {name}: name it in "
                 "node_names of a lifecycle manager"
@@ -80,3 +82,9 @@ def _may_start_others(workspace: Workspace) -> bool:
         if graph.unread or any(process.program.startswith("ros2 ") for process in graph.processes):
             return True
     return False
+
+
+def _may_be_open(workspace: Workspace, package: Package, node: StartedNode) -> bool:
+    """Return whether a node may start itself: by a parameter, or by one that is not known."""
+    given = workspace.parameters.given_to(package, node)
+    return bool(given.unknown) or _STARTS_ITSELF in given.values

@@ -301,10 +301,17 @@ def _is_of_other_rule(
     else:
         has_manager = any(node.program == _MANAGER for node in graph.nodes)
         is_said = asking.node.kind == "controller" and is_of_type and has_manager
+    return is_said or _is_remapped(launch, asking, offering)
+
+
+def _is_remapped(launch: Launch, asking: _FreeEnd, offering: _FreeEnd) -> bool:
+    """Return whether a remapping of a node of two ends is about the name that is asked for."""
+    name = asking.end.name
     for node in launch.nodes:
         names = [node.full_name(rule[1]) for rule in node.remaps or ()]
-        if node.location == offering.node.location:
-            is_said = is_said or asked.name in names
-        if node.location == asking.node.location and asking.is_own and names:
-            is_said = is_said or asked.name not in names
-    return is_said
+        if node.location == offering.node.location and name in names:
+            return True
+        is_asking = node.location == asking.node.location and asking.is_own
+        if is_asking and names and name not in names:
+            return True
+    return False

@@ -908,20 +908,19 @@ class _Module:
             name = _text(self._argument(part, call, position, "node_name"))
             written = given_argument(call, position, "node_name")
             if name is None and isinstance(written, ast.Name):
-                name = self._constructor_text(part, written.id)
+                name = self._constructor_text(part, self._classes[part.of], written.id)
             yield _Name(name, self._at(call))
             for keyword in call.keywords:
                 if keyword.arg in _OPTIONS:
                     reason = f"{keyword.arg or 'more arguments'} of its Node"
                     yield Doubt(reason, self._at(call), "" if keyword.arg else "more arguments")
 
-    def _constructor_text(self, part: CodePart, name: str) -> str | None:
-        """Return the text that a parameter of a constructor has in each call of the module.
+    def _constructor_text(self, part: CodePart, owner: str, name: str) -> str | None:
+        """Return the text that a parameter of a constructor has in each call of its class.
 
         It is None where calls give several, or where the constructor binds the name again.
         """
         assert isinstance(part.node, AnyFunction)
-        assert part.of is not None
         parameters = [*part.node.args.posonlyargs, *part.node.args.args]
         names, defaults = [each.arg for each in parameters], part.node.args.defaults
         if name not in names or name in names_bound(walk(ast.Module(part.node.body, []))):
@@ -931,7 +930,7 @@ class _Module:
         texts = set[str | None]()
         for caller in self._parts:
             for call in caller.calls:
-                if self._called(caller, call) == self._classes[part.of]:
+                if self._called(caller, call) == owner:
                     given = self._argument(caller, call, position - 1, name)
                     if given is None:
                         given = self._constants.evaluate_node(default, part.scope)
