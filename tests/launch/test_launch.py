@@ -33,6 +33,8 @@ def test_every_expectation_has_its_sample() -> None:
 
 
 PYTHON = """\
+import os
+from functools import partial
 from launch import LaunchDescription
 from launch.actions import *
 from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription, OpaqueFunction
@@ -45,6 +47,7 @@ def generate_launch_description():
     {inside}
     return LaunchDescription([{actions}])
 """
+NODE = "Node(package='a', executable='b')"
 RVIZ = "Node(package='rviz2', executable='rviz2', arguments=['-d', {}])"
 
 
@@ -118,6 +121,45 @@ HOSTILE_PYTHON = {
     "handler of itself": python("f", "def f():\n    return [f, f]"),
     "huge text": python(RVIZ.format("x"), "x = 'a' * 1000\nfor i in range(40):\n    x = x + x"),
     "huge number": python(RVIZ.format("x"), "x = 9\nfor i in range(9000):\n    x = x + x"),
+    "open branches that double": python(
+        NODE,
+        inside="a, b, u = [1], [2], os.environ.get('U')\n"
+        + """\
+    if u: c = a
+    else: c = b
+    if u: d = b
+    else: d = a
+    a, b = c, d
+"""
+        * 200,
+    ),
+    "open branches of many names": python(
+        NODE,
+        inside="u = os.environ.get('U')\n"
+        + "".join(f"    x{number} = {number}\n" for number in range(3000))
+        + "    if u: y = 1\n" * 6000,
+    ),
+    "open lists, deep": python(
+        "*a",
+        inside="a, u = [], os.environ.get('U')\n"
+        "    for i in range(3000):\n        b = []\n        if u: b.append(a)\n        a = b",
+    ),
+    "open lists, wide": python(
+        "*a",
+        inside=f"a, u = [{NODE}] * 60, os.environ.get('U')\n"
+        "    for i in range(12):\n        b = []\n        if u: b += [a, a, a, a]\n        a = b",
+    ),
+    "calls of nothing known": python(
+        NODE, "".join(f"x{number} = []\n" for number in range(2000)) + "g = gone(os)\n" * 1500
+    ),
+    "partial of nothing": python("OpaqueFunction(function=partial())"),
+    "keywords that are open": python(
+        "OpaqueFunction(function=partial(dict, a=1), kwargs=os.environ.get('X'))"
+    ),
+    "keywords that are numbers": python("OpaqueFunction(function=partial(dict), kwargs={1: 2})"),
+    "documents of nothing": python(
+        NODE, "import xml.etree.ElementTree as ET\nET.tostring(ET.parse('a')).decode()\nET.parse()"
+    ),
     "long line": python("'" + "a" * 1_000_000 + "'"),
     "brackets": b"x = " + b"[" * 100_000,
     "closed brackets": b"x = " + b"[" * 90 + b"]" * 90,

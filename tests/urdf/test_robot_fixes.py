@@ -42,6 +42,7 @@ def _fixes(path: str, text: str) -> dict[Edits, str]:
     [
         (_PATH, 'type="fixed"', 'type="fixd"'),
         (_PATH, '<child link="tool"/>', '<child link="tol"/>'),
+        (_PATH, '<child link="tool"/>', '<child link="&#116;ol"/>'),
         (_PATH, '<child link="tool"/>', '<child lnk="tool"/>'),
         (_PATH, '<parent link="base"/>', '<parnt link="base"/>'),
         (_PATH, 'size="1 1 1"', 'siz="1 1 1"'),

@@ -221,13 +221,14 @@ class Problems:
         # Late: few names are repeated or pasted.
         from grader.base import markup
         from grader.base.element_edits import escaped, with_attribute
+        from grader.ros.xml.tinyxml2 import decode
 
         index, value = self._indices[name.element], escaped(name.meant)
         if self.rewrites is not None:
             return next(iter(self.rewrites(index, name.attribute, (name.written, value))), ())
         source, start = self.source.element(index)
         there = markup.attribute(source.text, start, name.attribute)
-        is_whole = there is not None and source.text[slice(*there.value)] == escaped(name.written)
+        is_whole = there is not None and decode(source.text[slice(*there.value)]) == name.written
         return (with_attribute(source, start, name.attribute, value),) if is_whole else ()
 
     def duplicate(self, kind: Kind, element: Element, first: Element) -> None:

@@ -5,13 +5,14 @@ from collections.abc import Collection, Iterator, Mapping
 from itertools import islice
 
 from grader.base import markup
-from grader.base.element_edits import tag_edits, with_attribute
+from grader.base.element_edits import escaped, tag_edits, with_attribute
 from grader.base.names import near
 from grader.base.slips import Slip
 from grader.base.source import Edits, Source
 from grader.base.text import cut, quoted
 from grader.ros.urdf.words import meant_attribute, meant_tag, meant_value
 from grader.ros.xml.parsing import Element
+from grader.ros.xml.tinyxml2 import decode
 from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN
 
 _MAX_SLIPS = 20
@@ -117,7 +118,8 @@ class RobotSlips:
             return
         written = source.text[slice(*attribute.value)]
         value = written if numbers is None else numbers
-        if numbers is not None and written != element.get(name):  # xacro makes the value of texts
+        is_made = decode(written) != element.get(name)  # by xacro, of texts
+        if numbers is not None and is_made:
             value = _without_separators(written)
         before = source.text[attribute.start + len(name) : attribute.value_start]
         after = source.text[attribute.value_end : attribute.end]
@@ -157,8 +159,8 @@ class RobotSlips:
             for element in places:
                 source, start = self._place(element)
                 there = markup.attribute(source.text, start, "name")
-                if there is not None and source.text[slice(*there.value)] == written:
-                    edit = with_attribute(source, start, "name", meant)
+                if there is not None and decode(source.text[slice(*there.value)]) == written:
+                    edit = with_attribute(source, start, "name", escaped(meant))
                     reaction = f"there is no material {quoted(name)}"
                     assumption = f"the material {quoted(written)} is read as {quoted(meant)}"
                     slips[element] = self._slip(element, (edit,), reaction, assumption, "name")
