@@ -80,23 +80,20 @@ _STEPS = tuple(map(Decimal, ("1", "0.5", "0.25", "0.1", "0.05", "0.01")))  # of 
 _JOINTS, _SHAPES, _MASSES, _SIMULATION = "joints", "shapes", "masses", "simulation"
 _BUILDS, _LAUNCHES, _RVIZ, _NODES = "builds", "launch files", "RViz", "nodes"
 _NAMES, _PARAMETERS = "names", "parameters"
-_KIND_BY_CHECK: Mapping[str, str] = {
-    **dict.fromkeys(("shows_box", "shows_cylinder", "shows_sphere", "shows_mesh"), _SHAPES),
-    **dict.fromkeys(("shows_colour", "shows_nothing", "centre_at"), _SHAPES),
-    **dict.fromkeys(("collides_as", "collision_matches_visual"), _SHAPES),
-    **dict.fromkeys(("mass_is", "inertia_plausible"), _MASSES),
-    **dict.fromkeys(("entry_is", "world_has"), _SIMULATION),
-    "urdf_loads": _BUILDS,
-    **dict.fromkeys(("package_found", "package_type", "setup_imports"), _BUILDS),
-    **dict.fromkeys(("build_installs", "installs_files"), _BUILDS),
-    **dict.fromkeys(("node_runs", "launch_complete"), _LAUNCHES),
-    **dict.fromkeys(("connects", "publishes_transform"), _NODES),
-    **dict.fromkeys(("rviz_found", "rviz_fixed_frame", "rviz_shows_robot"), _RVIZ),
-    "rviz_display_on": _RVIZ,
-    "looks_up": _NODES,
-    "takes_parameters": _NODES,
-    "without_problems": _BUILDS,
-    "parameter_is": _PARAMETERS,
+_CHECKS_BY_KIND = {
+    _SHAPES: "shows_box shows_cylinder shows_sphere shows_mesh shows_colour shows_nothing "
+    "centre_at collides_as collision_matches_visual",
+    _MASSES: "mass_is inertia_plausible",
+    _SIMULATION: "entry_is world_has",
+    _BUILDS: "urdf_loads package_found package_type setup_imports build_installs installs_files "
+    "without_problems",
+    _LAUNCHES: "node_runs launch_complete",
+    _NODES: "connects publishes_transform looks_up takes_parameters",
+    _RVIZ: "rviz_found rviz_fixed_frame rviz_shows_robot rviz_display_on",
+    _PARAMETERS: "parameter_is",
+}
+_KIND_BY_CHECK = {
+    check: kind for kind, checks in _CHECKS_BY_KIND.items() for check in checks.split()
 }
 _OF_NODES = ("topics", "services", "interfaces", "code", "transforms")
 _OF_CODE = frozenset({"publishes", "subscribes", "serves", "calls", "active"})

@@ -15,6 +15,7 @@ from grader.base.errors import MissingElement, NotDecided
 from grader.base.quantities import point
 from grader.base.text import counted, enumerated
 from grader.base.transforms import rotation_from_rpy
+from grader.lab.checks.collisions import shape_text
 from grader.lab.checks.visuals import MAX_SHAPES
 from grader.lab.submission.submission import Submission
 from grader.ros.package.mesh_files import mesh_file
@@ -273,23 +274,9 @@ def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Exp
             return _link_expectation(link, "collision_matches_visual")
     xyz, rpy = _rounded(collision.origin.xyz), _rounded(collision.origin.rpy, 4)
     rotated = ", rotated" if any(rpy) else ""
-    title = f"{link!r} collides as {_shape_text(collision)} at {point((*xyz,))} m{rotated}"
+    title = f"{link!r} collides as {shape_text(collision.geometry)} at {point((*xyz,))} m{rotated}"
     expectation = _link_expectation(link, "collides_as", **shape, xyz=xyz, rpy=rpy, **only)
     return expectation._replace(title=title)
-
-
-def _shape_text(collision: Collision) -> str:
-    """Return the shape of a collision with its size."""
-    match collision.geometry:
-        case Box(size=(x, y, z)):
-            return f"a box of {x:g} x {y:g} x {z:g} m"
-        case Cylinder(radius=radius, length=length):
-            return f"a cylinder of radius {radius:g} and length {length:g} m"
-        case Capsule(radius=radius, length=length):
-            return f"a capsule of radius {radius:g} and length {length:g} m"
-        case Sphere(radius=radius):
-            return f"a sphere of radius {radius:g} m"
-    return "a mesh"
 
 
 def _joint_expectations(robot: Configuration, joint: Joint) -> Iterator[Expectation]:

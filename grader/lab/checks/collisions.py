@@ -111,7 +111,7 @@ def collides_as(
         only: Whether the link has no other collision shape.
     """
     wanted = _wanted_shape(box, cylinder, capsule, sphere)
-    what = _shape_text(wanted) + _place_text(xyz, rpy, relative_to)
+    what = shape_text(wanted) + _place_text(xyz, rpy, relative_to)
     origin = Origin(xyz or _ZERO, rpy or _ZERO)
     pose = origin.placed_in(robot.pose(relative_to or link, relative_to=link))
     placed = PlacedShape(wanted, pose)
@@ -265,10 +265,11 @@ def _fail_with_nearest(
 
 def _describe_shape(element: Visual | Collision) -> str:
     """Return a shape with its sizes, and its place in the link."""
-    return f"{_shape_text(element.geometry)} at {point(element.origin.xyz)} m"
+    return f"{shape_text(element.geometry)} at {point(element.origin.xyz)} m"
 
 
-def _shape_text(geometry: Geometry) -> str:
+def shape_text(geometry: Geometry) -> str:
+    """Return a shape with its sizes in metres."""
     match geometry:
         case Box(size=size):
             return f"a box {point(size)} m"

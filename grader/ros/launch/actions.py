@@ -552,8 +552,11 @@ def _call_opaque_function(
 ) -> None:
     function, args = call.kwargs["function"], call.kwargs.get("args") or []
     named = call.kwargs.get("kwargs") or {}
-    is_known = isinstance(args, list | tuple) and isinstance(named, dict)
-    is_known = is_known and all(isinstance(name, str) for name in named)
+    is_known = (
+        isinstance(args, list | tuple)
+        and isinstance(named, dict)
+        and all(isinstance(name, str) for name in named)
+    )
     if not isinstance(function, Function | Call) or not is_known:
         raise Undetermined("the result of this OpaqueFunction is not evaluated", call.at)
     arguments = (Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
