@@ -118,8 +118,8 @@ class RobotSlips:
             return
         written = source.text[slice(*attribute.value)]
         value = written if numbers is None else numbers
-        is_made = decode(written) != element.get(name)  # by xacro, of texts
-        if numbers is not None and is_made:
+        # Xacro makes the value of several texts.
+        if numbers is not None and decode(written) != element.get(name):
             value = _without_separators(written)
         before = source.text[attribute.start + len(name) : attribute.value_start]
         after = source.text[attribute.value_end : attribute.end]
