@@ -172,7 +172,8 @@ def changes(
     looks = [math.inf]  # the times of the last two
     is_asked: object = False
     while True:
-        start, began = time.monotonic(), time_ns()
+        # The clock of a file system may be some milliseconds behind.
+        start, began = time.monotonic(), time_ns() - 20_000_000
         now = _stamps([*watched, *besides], own_paths)
         looks = [looks[-1], time.monotonic() - start]
         pause = max(poll, _SHARE * min(looks))  # a look that a busy machine interrupts is longer

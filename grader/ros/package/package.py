@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from grader.ros.config.rviz import RvizFile
-    from grader.ros.installation.installation import Installation, KnownPrograms
+    from grader.ros.installation.installation import Installation, InstalledFile, KnownPrograms
     from grader.ros.installation.manifest import Manifest
     from grader.ros.known.releases import Release
     from grader.ros.launch.launch_model import Launch, NamedFile
@@ -40,6 +40,7 @@ MANIFEST, SETUP, CMAKE = "package.xml", "setup.py", "CMakeLists.txt"
 RESOURCE_INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
 _RVIZ_LIMIT = 512 * 1024  # bytes
+_MAX_FIRST_LINE = 100  # bytes
 _MAX_LAUNCHES = 10
 # What a file of a kind is called in messages, and how its name ends.
 _KINDS = {
@@ -286,6 +287,25 @@ class Package:
         if self.installation is not None:
             return self.installation.installed()
         return {}
+
+    @cached_property
+    def python_scripts(self) -> "tuple[InstalledFile, ...]":
+        """The Python files that a build installs as programs, by their ending or first line."""
+        folder = f"lib/{self.name}/"
+        copies = self.installation.copies if self.installation is not None else ()
+        return tuple(
+            copy
+            for copy in copies
+            if copy.target.startswith(folder) and self._is_python(copy.source)
+        )
+
+    def _is_python(self, path: str) -> bool:
+        if path.endswith(".py"):
+            return True
+        with suppress(InputError):
+            first = self.tree.files[path].read(_MAX_FIRST_LINE, first=True).partition(b"\n")[0]
+            return first.startswith(b"#!") and b"python" in first
+        return False
 
     @cached_property
     def known_programs(self) -> "KnownPrograms":

@@ -1,5 +1,6 @@
 """The text of code without what it does not do: its comments and texts."""
 
+import posixpath
 import re
 
 _PYTHON = re.compile(
@@ -20,7 +21,13 @@ def code_alone(text: str, path: str) -> str:
 
     What a text of Python is filled with by its f"{name}" is code.
     """
-    return (_PYTHON if path.endswith(".py") else _CPP).sub(_blank, text)
+    is_python = path.endswith(".py") or is_script(path)
+    return (_PYTHON if is_python else _CPP).sub(_blank, text)
+
+
+def is_script(path: str) -> bool:
+    """Return whether a file of code is a program without an ending, which only Python has."""
+    return "." not in posixpath.basename(path)
 
 
 def _blank(match: re.Match[str]) -> str:

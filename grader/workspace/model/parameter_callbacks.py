@@ -8,7 +8,7 @@ from grader.workspace.model.code_text import code_alone
 from grader.workspace.model.workspace import Workspace
 
 _ENDINGS = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
-_BUILDS = ("CMakeLists.txt", "setup.py")
+_BUILD = "CMakeLists.txt"
 _COMMENT = re.compile(r"#[^\n]*")  # of CMake
 # Callbacks that can refuse values, and those that are told of values that were set.
 _REFUSING = re.compile(r"\badd_(?:on|pre)_set_parameters_callback\s*+\(")
@@ -52,7 +52,7 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
     first: dict[re.Pattern[str], Location] = {}
     may_refuse = False
     for package in workspace.packages:
-        for source in workspace.texts.read_sources(package, (*_ENDINGS, *_BUILDS)):
+        for source in workspace.texts.read_sources(package, (*_ENDINGS, _BUILD)):
             code = _strip_comments(source)
             may_refuse = may_refuse or _may_refuse(code)
             for pattern in (_REFUSING, _TOLD, _REFUSES, _LIMITS, _GENERATES, _READS):
@@ -71,9 +71,9 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
 
 def _strip_comments(source: Source) -> str:
     """Return a text without its comments, and without the texts in code."""
-    if source.path.endswith(_ENDINGS):
-        return code_alone(source.text, source.path)
-    return _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
+    if source.path.endswith(_BUILD):
+        return _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
+    return code_alone(source.text, source.path)
 
 
 def _may_refuse(code: str) -> bool:

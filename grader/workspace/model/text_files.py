@@ -14,6 +14,7 @@ from grader.files.tree import parents
 from grader.ros.installation.places import is_launch_file
 from grader.ros.package.package import Package
 from grader.ros.xml.parsing import XmlFault, XmlFile
+from grader.workspace.model.code_text import is_script
 from grader.workspace.model.workspace_folder import WorkspaceFolder
 
 _MAX_FILES = 60  # of one kind in a package
@@ -188,8 +189,15 @@ def _as_words(texts: Iterable[str]) -> str:
 
 
 def _paths_ending(package: Package, endings: tuple[str, ...]) -> Sequence[str]:
-    """Return the paths of the files of a package with some endings."""
-    return [path for path in package.tree.files if path.endswith(endings)]
+    """Return the paths of the files of a package with some endings.
+
+    A program without an ending may be one of Python.
+    """
+    paths = [path for path in package.tree.files if path.endswith(endings)]
+    if ".py" in endings:
+        scripts = dict.fromkeys(script.source for script in package.python_scripts)
+        paths += [path for path in scripts if not path.endswith(endings)]
+    return paths
 
 
 def _without_comments(package: Package, path: str) -> Source | None:
@@ -198,7 +206,7 @@ def _without_comments(package: Package, path: str) -> Source | None:
     if data is None:
         return None
     text = data.decode("utf-8", "replace")
-    if path.endswith(_WITH_LINES):
+    if path.endswith(_WITH_LINES) or is_script(path):
         return Source(package.path(path), _COMMENT_LINE.sub(_blank, text))
     return Source(package.path(path), _without_xml_comments(text))
 

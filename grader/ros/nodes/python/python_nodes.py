@@ -13,10 +13,8 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial
 from typing import NamedTuple
 
-from grader.base.errors import InputError
 from grader.base.slips import Slip
 from grader.base.source import Edits, Location
-from grader.ros.installation.installation import InstalledFile
 from grader.ros.known.python_names import MODULES, python_names
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import CodePart, field_uses, given_argument, type_imports
@@ -89,7 +87,6 @@ _OF_CALL = 4  # parts of a call that leads to a node
 _MAX_ROUNDS = 50  # of a loop
 _MAX_GUESSED = 20  # entry points of a package, of which each that names nothing may be misspelt
 _BYTES_A_PART = 2  # of a program in which slips are searched, charged as one part
-_MAX_FIRST_LINE = 100  # bytes
 _DEPTH_OF_FILTERS = 10  # by message_filters of Jazzy
 _CREATES = frozenset({"rclpy.create_node", *NODE_CLASSES})
 _KINDS: dict[str, EndpointKind] = {
@@ -353,28 +350,8 @@ def _module_paths(package: Package) -> dict[str, str]:
             name = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
             modules[name] = path
     rows = [*modules.items()]
-    rows += [(script.source, script.source) for script in _scripts(package)]
+    rows += [(script.source, script.source) for script in package.python_scripts]
     return dict(rows[:_MAX_MODULES])
-
-
-def _scripts(package: Package) -> list[InstalledFile]:
-    """Return the Python files that a build installs as programs."""
-    copies = package.installation.copies if package.installation is not None else ()
-    lib = f"lib/{package.name}/"
-    return [
-        copy for copy in copies if copy.target.startswith(lib) and _is_python(package, copy.source)
-    ]
-
-
-def _is_python(package: Package, path: str) -> bool:
-    """Return whether a file is a Python program, by its ending or its first line."""
-    try:
-        start = package.tree.files[path].read(_MAX_FIRST_LINE, first=True)
-    except InputError:
-        return False
-    return path.endswith(".py") or (
-        start.startswith(b"#!") and b"python" in start.partition(b"\n")[0]
-    )
 
 
 def _programs(
@@ -398,7 +375,7 @@ def _programs(
         path = module_path(package, entry.module) or ""
         program = NodeProgram(entry.name, created, entry.location, path, entry.function)
         yield program._replace(may_have_more=has_more)
-    for copy in _scripts(package):
+    for copy in package.python_scripts:
         at = Location(package.path(copy.source), 1, 1)
         name = copy.target.rpartition("/")[2]
         created, has_more = created_by(copy.source, "")
