@@ -17,24 +17,29 @@ from grader.ros.python.walking import walk
 _FUNCTION = "generate_launch_description"
 
 
-def launch_slips(code: Code) -> list[Slip]:
-    """Return the slips in names for which Python stops before it launches anything."""
-    return [*_LaunchNames(code).found()]
+def launch_slips(code: Code, package: str, programs: Collection[str]) -> list[Slip]:
+    """Return the slips in names for which Python stops before it launches anything.
 
-
-def name_slips(code: Code) -> list[Slip]:
-    """Return the names that a Python file uses and does not define.
-
-    Each is near one that it defines.
+    The file is of a package with these programs.
     """
-    return [*_LaunchNames(code).undefined()]
+    return [*_LaunchNames(code, package, programs).found()]
+
+
+def name_slips(code: Code, package: str) -> list[Slip]:
+    """Return the names that a Python file of a package uses and does not define.
+
+    Each is near one that it defines, or that of the package without quotes.
+    """
+    return [*_LaunchNames(code, package).undefined()]
 
 
 class _LaunchNames:
     """The names of one file."""
 
-    def __init__(self, code: Code) -> None:
+    def __init__(self, code: Code, package: str, programs: Collection[str] = ()) -> None:
         self._code = code
+        self._package = package
+        self._programs = programs
         self._nodes = walk(code.tree)
         self._bound: set[str] = set()
         self._classes: dict[str, str] = {}  # the full names of imported classes
@@ -103,6 +108,8 @@ class _LaunchNames:
             if name in defined:
                 continue
             meant = self._renamed.get(name) or _surely(name, self._bound)
+            if name == self._package:
+                meant = repr(name)
             if meant is not None:
                 yield read_as(self._code, node, name, meant, f"the name {name} is not defined")
 
@@ -138,8 +145,9 @@ class _LaunchNames:
                 reaction = f"the package {package} has no program {program!r}"
                 yield read_as(self._code, given["executable"], program, meant, reaction)
             return
-        meant = near(package, packages_with_files())
-        if meant is not None and program in find_programs(meant):
+        meant = near(package, (self._package, *packages_with_files()))
+        is_own = meant == self._package and program in self._programs
+        if meant is not None and (is_own or program in find_programs(meant)):
             reaction = f"ROS 2 has no package {package!r}"
             yield read_as(self._code, given["package"], package, meant, reaction)
 

@@ -66,13 +66,26 @@ def _has_programs(installation: Installation) -> bool:
     return bool(installation.console_scripts) or any(copies)
 
 
+def _programs(package: Package) -> set[str]:
+    """Return the names of the programs that a build of a package installs."""
+    installation = package.installation
+    if installation is None:
+        return set()
+    known = installation.known_programs()
+    folder = f"lib/{package.name}/"
+    copied = {path.removeprefix(folder) for path in known.targets if path.startswith(folder)}
+    return copied.union(known.listed or ())
+
+
 def _python_file(package: Package, path: str, *, is_launch_file: bool) -> Iterator[Slip]:
     data = package.tree.read(path, _LIMIT)
     if data is None:
         return
     parsed = parse(data, package.path(path), package.releases)
-    if isinstance(parsed, Code):
-        yield from launch_slips(parsed) if is_launch_file else name_slips(parsed)
+    if isinstance(parsed, Code) and is_launch_file:
+        yield from launch_slips(parsed, package.name, _programs(package))
+    elif isinstance(parsed, Code):
+        yield from name_slips(parsed, package.name)
     else:
         from grader.ros.python.python_slips import python_slips  # late: most files are read
 
@@ -94,9 +107,21 @@ def _build_slips(package: Package, installation: Installation) -> Iterator[Slip]
     data = package.tree.read(SETUP, _LIMIT)
     code = parse(data or b"", package.path(SETUP), package.releases)
     if isinstance(code, Code):
+        yield from _absolute_slips(code)
         yield from _argument_slips(installation, code)
         yield from _entry_slips(package, code.source)
         yield from _name_slips(package, installation, code, name)
+
+
+def _absolute_slips(code: Code) -> Iterator[Slip]:
+    """Yield the last part of a path that begins with a slash, for which join() drops the others."""
+    for node in walk(code.tree):
+        match node:
+            case ast.Call(
+                func=ast.Attribute(attr="join"), args=[_, *_, ast.Constant(value=str(part)) as last]
+            ) if part.startswith("/"):
+                reaction = f"os.path.join() drops what stands before {part!r}"
+                yield read_as(code, last, part, part.lstrip("/"), reaction)
 
 
 def _argument_slips(installation: Installation, code: Code) -> Iterator[Slip]:
