@@ -23,6 +23,12 @@ _QUOTED_VALUE = re.compile(
     (?P<value>[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?|true|false)\3)\s*(?:\#.*)?\Z""",
     re.VERBOSE,
 )
+# Values that stand as in a list below a key, behind an equals sign, or without a colon.
+_MEANT_VALUES = (
+    (re.compile(r"^(\s*[\w./]+:\s+)-\s+([^\s#]+)"), r"\1[\2]"),
+    (re.compile(r"^(\s*[\w./]+)\s*=\s*(?=\S)"), r"\1: "),
+    (re.compile(r"^(\s*[\w./]+)(?=\s+[^\s:#]+\s*(?:#.*)?$)"), r"\1:"),
+)
 _CLOSING = {"[": "]", "{": "}"}
 
 
@@ -84,7 +90,10 @@ def _slip(fault: YamlFault, index: int, written: str, new: str, path: str) -> Sl
     shown = [quoted(cut(" ".join(text.split()), _MAX_SHOWN)) for text in (written, new)]
     assumption = f"{shown[0]} is read as {shown[1]}"
     if shown[0] == shown[1]:
-        assumption = "the tab before it is read as blanks"
+        blanks = [len(text) - len(text.lstrip()) for text in (written, new)]
+        assumption = f"the indentation of {blanks[0]} blanks is read as {blanks[1]}"
+        if "\t" in written[: blanks[0]]:
+            assumption = "the tab before it is read as blanks"
     edit = Edit(path, index + 1, 1, written, new)
     location = Location(path, index + 1, 1)
     return Slip((edit,), f"the file is no YAML: {fault}", assumption, location, is_refused=True)
@@ -142,10 +151,11 @@ def _changes(lines: Sequence[str], index: int) -> Iterator[str]:
     line = lines[index]
     if len(line) > _MAX_LENGTH or not line.strip():
         return
-    yield from _without_tabs(lines, index)
-    spaced = _NO_BLANK.sub(r"\1: ", line, count=1)
-    if spaced != line:
-        yield spaced
+    yield from _with_other_indentation(lines, index)
+    for pattern, meant in ((_NO_BLANK, r"\1: "), *_MEANT_VALUES):
+        changed = pattern.sub(meant, line, count=1)
+        if changed != line:
+            yield changed
     code, _, comment = line.partition(" #")
     rest = f" #{comment}" if comment else ""
     for opening, closing in _CLOSING.items():
@@ -156,12 +166,16 @@ def _changes(lines: Sequence[str], index: int) -> Iterator[str]:
             yield f"{code.rstrip()}{quote}{rest}"
 
 
-def _without_tabs(lines: Sequence[str], index: int) -> Iterator[str]:
-    """Yield a line with tabs at its start with the indentation of others instead."""
+def _with_other_indentation(lines: Sequence[str], index: int) -> Iterator[str]:
+    """Yield a line with the indentation of others: of those above where it has tabs."""
     line = lines[index]
     content = line.lstrip()
-    if "\t" in line[: len(line) - len(content)]:
-        others = [*reversed(lines[:index]), *lines[index + 1 :]]
-        texts = [other for other in others if other.strip() and not other.startswith("\t")]
-        for other in texts[:2]:
-            yield other[: len(other) - len(other.lstrip())] + content
+    above, below = (
+        [other for other in others if other.strip() and not other.startswith("\t")]
+        for others in (reversed(lines[:index]), lines[index + 1 :])
+    )
+    near = (
+        (above + below)[:2] if "\t" in line[: len(line) - len(content)] else above[:1] + below[:1]
+    )
+    for other in near:
+        yield other[: len(other) - len(other.lstrip())] + content
