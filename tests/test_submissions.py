@@ -2,15 +2,17 @@
 
 import csv
 import filecmp
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from decimal import Decimal
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
 from grader.lab.grading.grade import grade
-from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
+from grader.lab.rubric.hint_levels import HintLevel
+from grader.lab.rubric.rubric import Rubric, load_rubric, shipped_rubrics
 from grader.lab.submission.opening import open_submission
 from grader.ros.known.releases import Release
 from grader.ros.package.robot_file import Read
@@ -66,9 +68,8 @@ def test_every_sample_loses_the_expected_criteria() -> None:
     assert {name: wrong for name, wrong in found.items() if wrong} == {}
 
 
-def _marks(sample: Sample, distro: Release) -> list[tuple[str, str, Decimal | None, str]]:
-    """Return what a sample gets for each criterion in a lab for a release."""
-    rubric = replace(sample.rubric, distro=distro)
+def _marks(sample: Sample, rubric: Rubric) -> list[tuple[str, str, Decimal | None, str]]:
+    """Return what a sample gets for each criterion of a rubric."""
     report = grade(rubric, opened(sample.path, rubric))
     return [
         (it.criterion.id, it.outcome.status, it.points, it.outcome.message) for it in report.results
@@ -78,8 +79,26 @@ def _marks(sample: Sample, distro: Release) -> list[tuple[str, str, Decimal | No
 @pytest.mark.exhaustive
 def test_every_sample_has_the_same_marks_in_a_lab_for_lyrical() -> None:
     """No sample uses what one of the two releases lacks."""
-    samples = SAMPLES.items()
-    assert [name for name, it in samples if _marks(it, "lyrical") != _marks(it, "jazzy")] == []
+    assert _differing([("lyrical", "cause"), ("jazzy", "cause")]) == []
+
+
+@pytest.mark.exhaustive
+def test_marks_do_not_depend_on_hints() -> None:
+    """What is read as it is meant is found in the files alone."""
+    assert _differing([("jazzy", "none"), ("jazzy", "edit")]) == []
+
+
+def _differing(settings: Iterable[tuple[Release, HintLevel]]) -> list[str]:
+    """Return the samples whose marks differ between labs for releases with hints of some levels."""
+    return [
+        name
+        for name, sample in SAMPLES.items()
+        for first, second in pairwise(
+            _marks(sample, replace(sample.rubric, distro=distro, hints=hints))
+            for distro, hints in settings
+        )
+        if first != second
+    ]
 
 
 def test_there_are_enough_samples() -> None:
