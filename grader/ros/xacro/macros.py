@@ -6,7 +6,13 @@ from typing import NamedTuple
 from grader.base.names import near
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import Undetermined
-from grader.ros.xacro.scopes import UnknownName, XacroDefinition, XacroFails, XacroScope
+from grader.ros.xacro.scopes import (
+    ScopePlace,
+    UnknownName,
+    XacroDefinition,
+    XacroFails,
+    XacroScope,
+)
 from grader.ros.xacro.texts import Texts
 from grader.ros.xacro.xacro_nodes import XacroNode
 
@@ -128,9 +134,14 @@ def bind_blocks(
 
 
 def bind_defaults(
-    macro: Macro, left: list[_MacroParameter], caller: XacroScope, inner: XacroScope, texts: Texts
+    macro: Macro,
+    left: list[_MacroParameter],
+    caller: XacroScope,
+    inner: XacroScope,
+    texts: Texts,
+    place: ScopePlace,
 ) -> None:
-    """Bind the parameters that the call does not give."""
+    """Bind the parameters that the call at a place does not give."""
     missing: list[str] = []
     for parameter in left:
         if parameter.is_block:
@@ -149,6 +160,5 @@ def bind_defaults(
         else:
             missing.append(parameter.name)
     if missing:
-        raise MacroError(
-            f"this call of the macro {macro.name} gives no value for {', '.join(missing)}"
-        )
+        message = f"this call of the macro {macro.name} gives no value for {', '.join(missing)}"
+        texts.refuse(inner, missing, MacroError(message), place)

@@ -101,7 +101,7 @@ def _call_by_name(
     if given.open and not given.elements:
         raise Undetermined(given.open)
     bind_blocks(macro, given.elements, left, inner.symbols)
-    bind_defaults(macro, left, scopes.symbols, inner.symbols, expander.texts)
+    bind_defaults(macro, left, scopes.symbols, inner.symbols, expander.texts, node.place)
     expander.budget.charge(len(expander.calls))
     before = expander.calls
     expander.calls = (*before, (name, node.place))

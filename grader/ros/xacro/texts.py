@@ -222,6 +222,15 @@ class Texts:
         target.bind(name, value, definition=XacroDefinition(name, text, place, attribute, scope))
         target.properties[name].failure = failure
 
+    def refuse(
+        self, target: XacroScope, names: Iterable[str], error: XacroFails, place: ScopePlace
+    ) -> None:
+        """Bind names to the reason why xacro fails at a place: they have no value."""
+        self._report(error, place, "")
+        for name in names:
+            target.bind(name, "", definition=XacroDefinition(name, "", place, "", target))
+            target.properties[name].failure = Reported(str(error))
+
     def _piece(self, piece: re.Match[str], scope: XacroScope) -> Value:
         if piece["text"] is not None:
             return piece["text"]
