@@ -38,12 +38,18 @@ def mistaken(draw: st.DrawFn) -> bytes:
 @settings(examples(20), suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(data=mistaken())
 def test_hints_gain_what_they_promise_and_lose_nothing(data: bytes) -> None:
-    """Each hint alone, and all hints together, applied to the file: what passed passes, and what is promised as well."""
+    """Each hint alone, and all hints together, applied to the file: what passed passes, and what is promised as well.
+
+    With a hint go the corrections with which the file is graded.
+    """
     submission = read_submission(data, identity="student", path=PATH)
     before = graded(submission)
     search = search_for(submission, before)
     for index, found in enumerate([*search.found, None]):
-        earlier = [it.edits for it in search.found] if found is None else found.after
+        earlier = [it.edits for it in search.found]
+        if found is not None:
+            corrected = [it.edits for it in search.slips if it is not found]
+            earlier = [*found.after, *(corrected if found not in search.slips else ())]
         needed = tuple(edit for edits in earlier for edit in edits)
         edits = (*needed, *(found.edits if found is not None else ()))
         gains = found.gains if found is not None else {}

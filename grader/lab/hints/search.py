@@ -343,7 +343,7 @@ def _leave_out(groups: Sequence[Edits], is_enough: Callable[[Edits], bool]) -> t
 class HintSearch:
     """The search for one submission.
 
-    `found` are proven edits that fit together, `edits` are those of all.
+    `found` are proven edits that fit together, first those of `slips`, `edits` are those of all.
     """
 
     def __init__(
@@ -366,7 +366,7 @@ class HintSearch:
             Situation, wanted=trials.rubric.links, reference=reference, package=package
         )
         self.found: list[FoundHint] = [*slips]
-        self._slips = tuple(slips)
+        self.slips = tuple(slips)
         self._situation = self._situation_of(trials.submission)
         if slips:
             self._situation = self._situation_after(self.edits)
@@ -420,14 +420,14 @@ class HintSearch:
     def _verify(self) -> None:
         """Take no hint back only if all together hold where the submission is read from scratch."""
         if self.found and not self.trials.graded(self.edits, self.results, whole=True):
-            self.found, self.results = [*self._slips], self.trials.results
+            self.found, self.results = [*self.slips], self.trials.results
 
     def _name_needed_hints(self) -> None:
         """Drop from each late hint the earlier hints without which it gives the points, too.
 
         A criterion that is carried has them.
         """
-        corrected = tuple(edit for slip in self._slips for edit in slip.edits)
+        corrected = tuple(edit for slip in self.slips for edit in slip.edits)
         for index, hint in enumerate(self.found):
 
             def still_gains(before: Edits, needed_hint: FoundHint = hint) -> bool:
@@ -544,7 +544,7 @@ class HintSearch:
         certainty: Certainty = "preferred" if equal is None else "one of several"
         after: tuple[Edits, ...] = ()
         if proof.is_late:
-            after = tuple(hint.edits for hint in self.found if hint not in self._slips)
+            after = tuple(hint.edits for hint in self.found if hint not in self.slips)
         other = equal.proposal if equal is not None else None
         self.found.append(FoundHint(proof.proposal, proof.gains, certainty, after, equal=other))
         self.results = proof.results
@@ -588,7 +588,7 @@ class HintSearch:
             edits, together, after = self._needed(edits, together, after)
         gains, is_late = together, False
         if self.found:
-            corrected = tuple(edit for slip in self._slips for edit in slip.edits)
+            corrected = tuple(edit for slip in self.slips for edit in slip.edits)
             alone, _ = self._gains(corrected, edits, self.trials.results)
             is_late = wanted.isdisjoint(alone)
             gains = together if is_late else alone
