@@ -49,6 +49,15 @@ def test_a_path_without_quotes_is_read_whole() -> None:
     assert b'<mesh filename="package://my_robot/caster.stl"/>' in found.xml
 
 
+def test_a_call_of_a_macro_without_elements_is_closed_where_it_begins() -> None:
+    """A macro of another file takes no element if another call has none."""
+    found = repair(
+        '<robot name="r" xmlns:xacro="x"><xacro:arm side="left"/><xacro:arm side="right">'
+        '<link name="a"/></robot>'
+    )
+    assert b'side="right"/><link name="a"/>' in found.xml
+
+
 @examples(40)
 @given(st.data())
 def test_any_damage_is_read_with_its_places(data: st.DataObject) -> None:

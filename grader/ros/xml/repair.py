@@ -49,6 +49,9 @@ _ATTRIBUTE = re.compile(
     re.VERBOSE,
 )
 _WORD = re.compile(r"[-+]?[\w.]*\w")
+_EMPTY_CALL = re.compile(
+    r"<(xacro:(?!(?:property|if|unless|macro|call|element)\b)[\w.-]++)(?:\s[^<>]*+|/)(?<=/)>"
+)
 _MACRO = re.compile(r"""<xacro:macro\s+name="([\w.-]+)"\s+params="([^"<]*)\"""")
 _NAMELESS = re.compile(r"""\s*=\s*["']([^"']*)["']""")
 _NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
@@ -305,6 +308,8 @@ class _Repairer:
         if self._plain_macros is None:
             macros = _MACRO.findall(self._text)
             self._plain_macros = {f"xacro:{macro}" for macro, params in macros if "*" not in params}
+            # Of a macro of another file, one call has elements only if all have.
+            self._plain_macros.update(_EMPTY_CALL.findall(self._text))
         return name in self._plain_macros
 
     def _close(self, tag: Tag, end: int) -> None:
