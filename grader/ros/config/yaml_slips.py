@@ -4,7 +4,7 @@ A slip is a tab, a blank after a colon, a bracket or a quote.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from grader.base.slips import Slip
 from grader.base.source import Edit, Location
@@ -170,12 +170,14 @@ def _with_other_indentation(lines: Sequence[str], index: int) -> Iterator[str]:
     """Yield a line with the indentation of others: of those above where it has tabs."""
     line = lines[index]
     content = line.lstrip()
-    above, below = (
-        [other for other in others if other.strip() and not other.startswith("\t")]
-        for others in (reversed(lines[:index]), lines[index + 1 :])
-    )
+    above, below = _list_texts(reversed(lines[:index])), _list_texts(lines[index + 1 :])
     near = (
         (above + below)[:2] if "\t" in line[: len(line) - len(content)] else above[:1] + below[:1]
     )
     for other in near:
         yield other[: len(other) - len(other.lstrip())] + content
+
+
+def _list_texts(lines: Iterable[str]) -> list[str]:
+    """Return the lines that are not empty and begin with no tab."""
+    return [line for line in lines if line.strip() and not line.startswith("\t")]
