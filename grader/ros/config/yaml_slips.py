@@ -16,6 +16,7 @@ _MAX_SLIPS = 5  # in one file
 _MAX_BYTES = 32 * 1024  # of a file: what may be meant is tried by reading it again
 _MAX_LENGTH = 1_000  # characters of a line
 _MAX_SHOWN = 60
+_MAX_MOVED = 2  # columns of an indentation
 _MAX_DEPTH = 5  # of the keys of nodes
 _NO_BLANK = re.compile(r"(?<![A-Za-z_])([A-Za-z_][\w /.-]{1,80}):(?=[^\s:/]|/[^/])")
 _QUOTED_VALUE = re.compile(
@@ -25,9 +26,9 @@ _QUOTED_VALUE = re.compile(
 )
 # Values that stand as in a list below a key, behind an equals sign, or without a colon.
 _MEANT_VALUES = (
-    (re.compile(r"^(\s*[\w./]+:\s+)-\s+([^\s#]+)"), r"\1[\2]"),
-    (re.compile(r"^(\s*[\w./]+)\s*=\s*(?=\S)"), r"\1: "),
-    (re.compile(r"^(\s*[\w./]+)(?=\s+[^\s:#]+\s*(?:#.*)?$)"), r"\1:"),
+    (re.compile(r"^(\s*(?:-\s+)?[\w./]+:\s+)-\s+([^\s#]+)"), r"\1[\2]"),
+    (re.compile(r"^(\s*(?:-\s+)?[\w./]+)\s*=\s*(?=\S)"), r"\1: "),
+    (re.compile(r"^(\s*(?:-\s+)?[\w./]+)(?=\s+[^\s:#]+\s*(?:#.*)?$)"), r"\1:"),
 )
 _CLOSING = {"[": "]", "{": "}"}
 
@@ -170,12 +171,13 @@ def _with_other_indentation(lines: Sequence[str], index: int) -> Iterator[str]:
     """Yield a line with the indentation of others: of those above where it has tabs."""
     line = lines[index]
     content = line.lstrip()
+    blanks = line[: len(line) - len(content)]
     above, below = _list_texts(reversed(lines[:index])), _list_texts(lines[index + 1 :])
-    near = (
-        (above + below)[:2] if "\t" in line[: len(line) - len(content)] else above[:1] + below[:1]
-    )
+    near = (above + below)[:2] if "\t" in blanks else above[:1] + below[:1]
     for other in near:
-        yield other[: len(other) - len(other.lstrip())] + content
+        others = other[: len(other) - len(other.lstrip())]
+        if "\t" in blanks or abs(len(others) - len(blanks)) <= _MAX_MOVED:
+            yield others + content
 
 
 def _list_texts(lines: Iterable[str]) -> list[str]:
