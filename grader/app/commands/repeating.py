@@ -23,6 +23,7 @@ from grader.report.writers.terminal_page import Page
 from grader.report.writing import Terminal
 
 _POLL = 0.2  # seconds between two looks, at least
+_TICKS = 20_000_000  # nanoseconds that the clock of a file system may be behind
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
 _OF_FOLDER = 3  # numbers in the stamp of a folder; that of a file ends with the time of its change
 _CLEAR = "\x1b[H\x1b[2J"
@@ -172,8 +173,7 @@ def changes(
     looks = [math.inf]  # the times of the last two
     is_asked: object = False
     while True:
-        # The clock of a file system may be some milliseconds behind.
-        start, began = time.monotonic(), time_ns() - 20_000_000
+        start, began = time.monotonic(), time_ns() - _TICKS
         now = _stamps([*watched, *besides], own_paths)
         looks = [looks[-1], time.monotonic() - start]
         pause = max(poll, _SHARE * min(looks))  # a look that a busy machine interrupts is longer

@@ -1,6 +1,7 @@
 """The slips for which a YAML file cannot be read.
 
-A slip is a tab, a blank after a colon, a bracket or a quote.
+A slip is a tab or another indentation, a blank after a colon, a bracket or a quote, an equals
+sign or nothing for a colon, or an item of a list behind its key.
 """
 
 import re
@@ -24,7 +25,7 @@ _QUOTED_VALUE = re.compile(
     (?P<value>[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?|true|false)\3)\s*(?:\#.*)?\Z""",
     re.VERBOSE,
 )
-# Values that stand as in a list below a key, behind an equals sign, or without a colon.
+# Lines with an item behind its key, with an equals sign, and without a colon; what each is read as.
 _MEANT_VALUES = (
     (re.compile(r"^(\s*(?:-\s+)?[\w./]+:\s+)-\s+([^\s#]+)"), r"\1[\2]"),
     (re.compile(r"^(\s*(?:-\s+)?[\w./]+)\s*=\s*(?=\S)"), r"\1: "),
@@ -168,7 +169,7 @@ def _changes(lines: Sequence[str], index: int) -> Iterator[str]:
 
 
 def _with_other_indentation(lines: Sequence[str], index: int) -> Iterator[str]:
-    """Yield a line with the indentation of others: of those above where it has tabs."""
+    """Yield a line with the indentation of its neighbours, or of those above where it has tabs."""
     line = lines[index]
     content = line.lstrip()
     blanks = line[: len(line) - len(content)]
