@@ -39,7 +39,13 @@ from grader.lab.rubric.keys import (
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
 from grader.report.examples import example_blocks, explain_kind, make_blocks
-from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text, list_rules
+from grader.report.explanations import (
+    CAUSES_OF_CHECK,
+    EFFECTS,
+    default_text,
+    list_outputs,
+    list_rules,
+)
 from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
 from grader.ros.known.package_files import IndexedKey, facts_in_file, packages_with_files
@@ -61,6 +67,7 @@ KEYS = {
     "[[test.ignore]]": IGNORE,
 }
 LANGUAGES = {
+    ".srv": "text",
     ".cfg": "ini",
     ".cpp": "cpp",
     ".hpp": "cpp",
@@ -128,6 +135,7 @@ def problems() -> Iterator[str]:
         effect = f" {EFFECTS[kind.effect]}".rstrip()
         yield from (f"## {kind.code}", "", f"{escaped(kind.title)} ({kind.severity}).", "")
         yield from (escaped(explain_kind(kind)) + effect, "")
+        yield from outputs(kind.code)
         rules = list_rules(kind)
         for rule in rules:
             yield f"- [`{rule.name}`](#{rule.name}): {escaped(rule.sentence)}"
@@ -137,9 +145,15 @@ def problems() -> Iterator[str]:
             yield from example(kind.code)
         for rule in own_rules:
             yield from (f"### `{rule.name}`", "", escaped(f"{rule.sentence} {rule.why}"), "")
-            for symptom in rule.symptoms:
-                yield from (f"In the terminal: `{symptom.example}`", "")
+            yield from outputs(rule.name)
             yield from example(rule.name)
+
+
+def outputs(name: str) -> Iterator[str]:
+    """Yield what the terminal prints where a rule is broken, or where a file has a problem."""
+    listed = [f"- `` {output} ``" for output in list_outputs(name)]
+    if listed:
+        yield from ("In the terminal:", "", *listed, "")
 
 
 # What one may want to ask, and the modules of the checks that do.
@@ -154,13 +168,21 @@ QUESTIONS = {
     "Does the package build and install its files?": ("package_build",),
     "What does a launch file start, and what do the nodes do?": (
         "launch",
+        "commands",
         "simulation",
         "lookups",
+        "own_interfaces",
+        "node_code",
         "set_parameters",
     ),
     "How do nodes work together?": ("launched_graph",),
     "What does RViz show?": ("rviz",),
     "Does everything fit together?": ("names_agree",),
+    "What did the robot do in a recording?": (
+        "recordings",
+        "recorded_motion",
+        "recorded_frames",
+    ),
     "What did the student write or show?": ("manual",),
 }
 
@@ -207,7 +229,7 @@ def check_section(check: Check) -> Iterator[str]:
 
 
 def rules_in_public() -> Iterator[str]:
-    """Yield how many errors each rule found in public workspaces, and the workspaces."""
+    """Yield how many findings of each rule in public workspaces were true, and the workspaces."""
     table = tomllib.loads(WORKSPACES.read_text(encoding="utf-8"))
     workspaces = table["workspace"]
     places: dict[tuple[str, str], Counter[bool]] = {}
@@ -215,27 +237,46 @@ def rules_in_public() -> Iterator[str]:
         for error in workspace.get("error", ()):
             counts = places.setdefault((error["code"], error.get("rule", "")), Counter())
             counts[error["is_true"]] += len(error["places"])
-    yield from ("| rule | code | true | false |", "|---|---|---|---|")
+    yield from ("| rule, or code without rules | true |", "|---|---|")
     for (code, rule), counts in sorted(places.items()):
-        name = f"[`{rule}`](problems.md#{rule})" if rule else "its only one"
-        link = f"[{code}](problems.md#{code.lower()})"
-        yield f"| {name} | {link} | {counts[True]} | {counts[False]} |"
+        yield f"| {link_to_rule(rule or code)} | {counts[True]}/{counts.total()} |"
     newer = tomllib.loads(NEWER_RULES.read_text(encoding="utf-8"))
     counted = {rule for _, rule in places} | {rule["name"] for rule in newer["rule"]}
     yield from rules_without_findings(counted, table["without_findings"])
-    yield from ("Newer rules, also their warnings and notes:", "")
-    yield from ("| rule | workspaces | true | false |", "|---|---|---|---|")
-    for rule in newer["rule"]:
-        name = rule["name"]
-        link = "problems.md" if name.isupper() else f"problems.md#{name}"
-        count = rule.get("workspaces", newer["workspaces"])
-        yield f"| [`{name}`]({link}) | {count} | {rule['true']} | {rule['false']} |"
-    yield ""
-    yield from ("| workspace | commit | errors |", "|---|---|---|")
+    yield from list_newer_rules(newer["rule"], newer["workspaces"])
+    yield from ("| workspace | errors |", "|---|---|")
+    without_errors = []
     for workspace in workspaces:
         name, commit = workspace["repository"], workspace["commit"]
+        link = f"[{name}](https://github.com/{name}/tree/{commit})"
         count = sum(len(error["places"]) for error in workspace.get("error", ()))
-        yield f"| [{name}](https://github.com/{name}/tree/{commit}) | `{commit[:12]}` | {count} |"
+        if count:
+            yield f"| {link} | {count} |"
+        else:
+            without_errors.append(link)
+    yield from ("", f"These have no errors: {enumerated(without_errors)}.")
+
+
+def link_to_rule(name: str) -> str:
+    """Return a link from the name of a rule, or from a code, to its section of the problems."""
+    return f"[`{name}`](problems.md#{name.lower()})"
+
+
+def list_newer_rules(rules: list[dict[str, Any]], usual_count: int) -> Iterator[str]:
+    """Yield a table of the newer rules with findings, and lists of the others by workspaces."""
+    silent: dict[int, list[str]] = {}
+    yield from ("Newer rules, also their warnings and notes:", "")
+    yield from ("| rule | workspaces | true |", "|---|---|---|")
+    for rule in rules:
+        count, found = rule.get("workspaces", usual_count), rule["true"] + rule["false"]
+        if found:
+            yield f"| {link_to_rule(rule['name'])} | {count} | {rule['true']}/{found} |"
+        else:
+            silent.setdefault(count, []).append(f"`{rule['name']}`")
+    yield from ("", "These found nothing:", "")
+    for count, names in sorted(silent.items(), reverse=True):
+        yield f"- in {count} workspaces: {enumerated(names)}"
+    yield ""
 
 
 def rules_without_findings(counted: set[str], without_findings: list[str]) -> Iterator[str]:
@@ -330,9 +371,14 @@ def public_findings_by_rule() -> dict[str, str]:
         count = Counter({True: rule["true"], False: rule["false"]})
         numbers[rule["name"]] = rule.get("workspaces", newer["workspaces"]), count
     return {
-        name: f"In {workspaces} public workspaces: {count[True]} true, {count[False]} false."
+        name: f"In {workspaces} public workspaces: {_judged(count)}."
         for name, (workspaces, count) in sorted(numbers.items())
     }
+
+
+def _judged(count: Counter[bool]) -> str:
+    """Return how many findings were true, and how many were not."""
+    return f"{count[True]} true, {count[False]} false" if count.total() else "no finding"
 
 
 def has_fact(package: str, key: str) -> bool:

@@ -5,9 +5,11 @@ import os
 import re
 import signal
 import sys
+import time
 from collections import Counter, defaultdict
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager, nullcontext
+from math import inf
 from pathlib import Path
 from random import Random
 
@@ -78,11 +80,22 @@ _LONGEST = (  # minutes of one worker in .ci/run, or nearly
     *("test_page_commands.py", "urdf/test_reader.py", "walks/test_walks.py"),
 )
 _FEW = 2  # cases of a test that README's command runs
+_MANY = 40  # cases of a test of which `--share` leaves some out
+_BEGAN = time.monotonic()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the order of files, which no result may depend on."""
+    """Add the order of files, which no result may depend on, and how much of large tables is run."""
     parser.addoption("--order", default="", help="'reversed', or a seed: how files are ordered")
+    parser.addoption(
+        "--share",
+        type=int,
+        default=1,
+        help=f"run one of so many cases of a test with more than {_MANY}; which ones depends on the seed",
+    )
+    parser.addoption(
+        "--minutes", type=float, default=inf, help="skip what has not begun after so many minutes"
+    )
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -106,6 +119,13 @@ def _kept_variables(beginning: str = "") -> Iterator[None]:
             if name.startswith(beginning) and os.environ.get(name) != before.get(name):
                 os.environ.pop(name, None)
                 os.environ.update({name: before[name]} if name in before else {})
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip a test that begins too late."""
+    minutes = item.config.option.minutes
+    if time.monotonic() - _BEGAN > 60 * minutes:
+        pytest.skip(f"not run: {minutes:g} minutes are over")
 
 
 @pytest.hookimpl(wrapper=True)
@@ -155,7 +175,26 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for item in many:
             if item not in kept:
                 item.add_marker("slow")
+    if config.option.share > 1:
+        _leave_out(items, config)
     _reorder(items, config.option.order)
+
+
+def _leave_out(items: list[pytest.Item], config: pytest.Config) -> None:
+    """Take out of large tables what is not in the share that the seed names."""
+    share = config.option.share
+    cases = defaultdict[str, list[pytest.Item]](list)
+    for item in items:
+        cases[item.nodeid.partition("[")[0]].append(item)
+    first = int(config.option.order) % share
+    out = {
+        item
+        for many in cases.values()
+        for place, item in enumerate(many)
+        if len(many) > _MANY and place % share != first
+    }
+    config.hook.pytest_deselected(items=[*out])
+    items[:] = [item for item in items if item not in out]
 
 
 def _of_each_kind(cases: list[pytest.Item]) -> list[pytest.Item]:

@@ -8,9 +8,11 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+sys.path.append(sys.path.pop(0))  # the folder of this script, whose `xml` would hide Python's
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from grader.lab.rubric.rubric import Rubric
+from tests.recordings.rover_drives import drive_files
 from tests.sample_class import class_files, package_files
 from tests.samples import ROOT, RUBRICS, SAMPLES, Sample
 
@@ -61,7 +63,7 @@ def _readme(rubric: Rubric, samples: list[Sample]) -> str:
     for sample in samples:
         groups[
             next(
-                iter(sample.expected.lost),
+                iter(lost_criteria(sample, rubric)),
                 "?" if rubric.criteria[0].id in sample.expected.pending else "",
             )
         ].append(sample)
@@ -79,9 +81,16 @@ def _readme(rubric: Rubric, samples: list[Sample]) -> str:
     return text
 
 
+def lost_criteria(sample: Sample, rubric: Rubric) -> list[str]:
+    """Return the criteria that lose points: those of extra credit only if not all of them do."""
+    extra = {row.id for row in rubric.criteria if row.bonus}
+    lost = sample.expected.lost
+    return [name for name in lost if name not in extra] if extra.issubset(lost) else [*lost]
+
+
 def _others(sample: Sample, rubric: Rubric) -> str:
-    points = sum(row.points for row in rubric.criteria if row.id in sample.expected.lost)
-    count = len(sample.expected.lost)
+    lost = [row for row in rubric.criteria if row.id in sample.expected.lost and not row.bonus]
+    points, count = sum(row.points for row in lost), len(lost)
     return f"{points} in {count} criteria" if count > 1 else str(points)
 
 
@@ -97,6 +106,7 @@ Each is listed under the first criterion that it loses.
 def generated() -> Iterator[tuple[Path, bytes]]:
     """Yield the path of each file that follows from others, and what it must contain."""
     yield from readmes()
+    yield from drive_files()
     yield from class_files()
     for folder, files in packages():
         yield from ((folder / name, data) for name, data in files.items())

@@ -216,3 +216,9 @@ def test_the_example_of_another_tool_prints_connections_and_findings() -> None:
     *_, joined, finding = done.stdout.splitlines()
     assert joined == "topic /joint_states: /joint_state_broadcaster -> /robot_state_publisher"
     assert "launch.py:38: REF003 controller-defined: spawner: there is no controller" in finding
+
+
+def test_a_robot_is_shown_by_its_values() -> None:
+    """Its representation says what it has."""
+    robot = grader.read_urdf('<robot name="arm"><link name="base"/></robot>').robot
+    assert repr(robot).startswith("Robot('arm', (Link(")

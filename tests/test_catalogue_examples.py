@@ -29,6 +29,7 @@ from grader.workspace.rules.problem_kinds import EVERY_KIND
 from tests.checks.submissions import png
 from tests.command_line import ROOT
 from tests.oracles.check_urdf import check_urdf
+from tests.recordings.writing import write_text
 
 FILES = {
     path.stem: tomllib.loads(path.read_text(encoding="utf-8"))
@@ -74,6 +75,7 @@ FOLDERS = {
     ".urdf": "urdf",
     ".xacro": "urdf",
     ".rviz": "rviz",
+    ".srv": "srv",
     ".yaml": "config",
     ".srdf": "config",
     ".sdf": "worlds",
@@ -85,6 +87,16 @@ WHEEL = """\
 <xacro:macro name="wheel" params="name"><link name="${name}"/></xacro:macro>
 </robot>
 """
+# The robot beside examples of recorded messages, and a recording of 2 s.
+RECORDED_ROBOT = b"""\
+<robot name="rover"><link name="base_link"/><link name="lidar"/>
+<link name="wheel"><visual><geometry><cylinder radius="0.1" length="0.04"/></geometry></visual></link>
+<joint name="wheel_joint" type="continuous"><parent link="base_link"/><child link="wheel"/>
+<origin rpy="-1.5708 0 0"/><axis xyz="0 0 1"/></joint>
+<joint name="lidar_joint" type="fixed"><parent link="base_link"/><child link="lidar"/><origin xyz="0 0 0.2"/></joint>
+</robot>
+"""
+_DRIVE = "- [0, /odom, nav_msgs/msg/Odometry, {}]\n- [2, /odom, nav_msgs/msg/Odometry, {}]"
 INSTALLED = """\
 ('share/rover/urdf', glob('urdf/*')),
 ('share/rover/launch', glob('launch/*')),
@@ -137,11 +149,34 @@ def path_of(frame: str) -> str:
     return str(PurePath(FOLDERS.get(ending, ""), file))
 
 
+# Those of one whose node is started.
+STARTED = PACKAGE | {
+    "setup.py": PACKAGE["setup.py"].replace(
+        "data_files=", "entry_points={'console_scripts': ['pilot = rover.pilot:main']}, data_files="
+    ),
+    "setup.cfg": "[install]\ninstall_scripts=$base/lib/rover\n",
+    "launch/rover.launch.py": framed("LCH001", "Node(package='rover', executable='pilot'),")[0],
+}
+
+
 # The files of a package that CMake builds.
 COMPILED = {
     "package.xml": PACKAGE["package.xml"].replace("ament_python", "ament_cmake"),
     "src/driver.cpp": "#include <rclcpp/rclcpp.hpp>\n#include <sensor_msgs/msg/imu.hpp>\nint main() {}\n",
     "src/teleop.cpp": "#include <rclcpp/rclcpp.hpp>\nint main() {}\n",
+}
+
+
+# And those of one that generates the code of a service.
+GENERATED = {
+    "package.xml": COMPILED["package.xml"].replace(
+        "</package>",
+        "<buildtool_depend>rosidl_default_generators</buildtool_depend>"
+        "<member_of_group>rosidl_interface_packages</member_of_group></package>",
+    ),
+    "CMakeLists.txt": "cmake_minimum_required(VERSION 3.16)\nproject(rover)\n"
+    "find_package(ament_cmake REQUIRED)\nfind_package(rosidl_default_generators REQUIRED)\n"
+    'rosidl_generate_interfaces(${PROJECT_NAME} "srv/Scan.srv")\nament_package()\n',
 }
 
 
@@ -152,14 +187,18 @@ def files_of(name: str, side: str) -> tuple[dict[str, bytes], range]:
     if file == "files.txt":
         contents = {
             PurePath(path).suffix: content.encode() for path, content in PACKAGE.items()
-        } | {".png": png()}
+        } | {".png": png(), ".mp4": b"", ".mcap": write_text(_DRIVE)}
         return {path: contents[PurePath(path).suffix] for path in text.split("\n") if path}, lines
+    if file == "recorded.yaml":
+        return {"drive/drive_0.mcap": write_text(text), "rover.urdf": RECORDED_ROBOT}, lines
     encoding = re.match(r'<\?xml .*encoding="([^"]*)"', text)
     own = text.encode(encoding[1] if encoding else "utf-8")
     if file.endswith((".urdf", ".md")):
         return {file: own}, lines
     path = path_of(file)
     package = COMPILED if path == "CMakeLists.txt" else PACKAGE
+    package = GENERATED if path.endswith(".srv") else package
+    package = STARTED if path == "rover/pilot.py" else package
     others = {**package}
     if path.startswith("urdf/"):
         others = {it: text for it, text in others.items() if not it.startswith("urdf/")}

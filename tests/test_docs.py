@@ -303,14 +303,17 @@ def test_every_test_that_the_table_of_attacks_names_exists() -> None:
 
 
 def test_the_pages_stay_short() -> None:
-    """The README has at most 700 words, and all pages that are not generated have at most 26,000."""
-    generated = (
+    """The README has at most 700 words, and all pages but the long generated ones have at most 26,000."""
+    long_generated = (
         *("problems.md", "checks.md", "misconfigurations.md"),
-        *("rubric-reference.md", "known-parameters.md", "rules.md"),
+        *("rubric-reference.md", "known-parameters.md"),
     )
     words = {
         page: len(page.read_text(encoding="utf-8").split())
-        for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]
+        for page in [
+            *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "docs/handout/answers.md")),
+            *(ROOT / "docs").glob("*.md"),
+        ]
     }
     assert words[ROOT / "README.md"] <= 700
-    assert sum(words[page] for page in words if page.name not in generated) <= 26_000
+    assert sum(words[page] for page in words if page.name not in long_generated) <= 26_000

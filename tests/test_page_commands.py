@@ -35,7 +35,10 @@ FOLLOWED = {  # pages whose blocks belong together
     "ci.md": "here: test_the_set_up_of_ci",
     "installation.md": "here: test_the_installation",
 }
-OTHER_FILES = {  # what only these pages presume, and what it is
+OTHER_FILES = {
+    "recordings.md": {
+        "solution": "submissions/rover/equivalent-recorded"
+    },  # what only these pages presume, and what it is
     "grade-one-submission.md": {"arm.urdf": "rubrics/arm/arm.urdf"},
     "gradescope.md": {"my_lab.toml": "rubrics/arm/rubric.toml"},
     "graph.md": {"rubrics/diffdrive": "rubrics/diffdrive"},
@@ -52,8 +55,6 @@ ELSEWHERE = {  # beginnings of command lines that another test runs
     "python3 -m venv .venv && .venv/bin/pip install": ".ci/run",
     ".venv/bin/python -m pytest": ".ci/run",
     ".venv/bin/ruff check": ".ci/run",
-    "python -m hatchling build": "test_distribution.py",
-    "twine check --strict dist/*": "test_distribution.py",
     "grader batch submissions --roster canvas.csv": "classroom/test_walkthrough.py",
     'grader mark "Anik Tagrigri"': "classroom/test_walkthrough.py",
     'grader mark "Ilu Lopelgri"': "classroom/test_walkthrough.py",
@@ -69,9 +70,9 @@ ELSEWHERE = {  # beginnings of command lines that another test runs
 }
 NOT_RUN = {  # beginnings of command lines that no test runs, and why
     ".venv/bin/pip install --upgrade 'pip>=25.1'": "takes what .ci/run installs from the network",
-    "git tag v0.9.0": "a release",
     "uv pip compile ": "takes the newest versions from the network",
     "ros2 launch ": "needs ROS 2; cli/test_log_option.py runs the pipe",
+    "ros2 bag record ": "needs ROS 2; tests/recordings/writing.py writes such files",
     "docker ": "needs Docker; ci/test_templates.py runs what the image runs",
 }
 CODES = {  # the robot has a mistake
@@ -90,6 +91,7 @@ PLACEHOLDERS = {
     "LMS": "canvas",
     "NEWPATH": "submissions",
     "PATH": "my_robot.urdf",
+    "RULE": "topic-type",
     "STUDENT": "alice",
     "TIME": "2026-11-20T23:59+01:00",
     "<id>": "lab6",
@@ -103,12 +105,17 @@ PLACEHOLDERS = {
 IN_TEXT = {  # commands in the text that are not run here: a test that does, or the reason
     "grader grade src/my_robot --watch": "cli/test_watch.py",
     "grader inspect --watch": "cli/test_watch.py",
+    "grader inspect drive": "recordings/test_inspect.py",
+    "grader view my_robot": "recordings/test_playback.py",
+    "grader view drive --log run.log": "recordings/test_playback.py",
+    "grader graph ws --recorded drive": "recordings/test_graph.py",
     "grader view src/my_robot --rubric lab6": "cli/test_view.py",
     "grader --install-completion": "changes the files of the shell; corpus/refusals.toml",
     "grader rubric new my_lab.toml --from solution.urdf": "docs/index.md has the same",
 }
 OTHER_PROGRAMS = {  # commands of other programs in the text of the README and of docs/: a test that runs them, or why none does
     "git clone https://github.com/urdf-grader/urdf-grader": "nothing is published yet",
+    "pip install 'urdf-grader[recordings]'": "nothing is published yet; .ci/run installs what the extra has",
     "pip install --editable '.[editor]'": "walks/editor.md installs the wheel with this extra",
     "python -m tests.parameters.make_known CHECKOUT...": "needs checkouts of ros2_control and ros2_controllers",
     "gh repo edit YOUR-ORG/NAME --template": "needs GitHub",

@@ -128,7 +128,7 @@ def test_names_are_unique() -> None:
 
 def test_only_manual_checks_are_always_pending() -> None:
     """The checks of a written answer and of a picture are the only ones without a case that passes."""
-    assert set(PENDING_CASE) == {"answered", "evidence_shown"}
+    assert set(PENDING_CASE) == {"answered", "evidence_shown", "manual"}
 
 
 def test_every_check_is_registered() -> None:
@@ -246,9 +246,9 @@ def is_supported(annotation: Any) -> bool:
     if origin is tuple:
         return all(item in (float, Ellipsis) for item in inner) or inner == (str, Ellipsis)
     if origin is not None:
-        return (
-            issubclass(origin, Mapping) and inner[0] is str and inner[1] in (str, SCALAR, CONTENT)
-        )
+        if not issubclass(origin, Mapping) or inner[0] is not str:
+            return False
+        return inner[1] in (str, SCALAR, CONTENT) or get_origin(inner[1]) is Literal
     return annotation in SAMPLES
 
 
@@ -265,7 +265,9 @@ def sample(annotation: Any) -> Any:
         return [sample(inner[0])]
     if origin is tuple:
         return [SAMPLES[inner[0]]] * (3 if Ellipsis in inner else len(inner))
-    return {"a": "b"} if origin is not None else SAMPLES[annotation]
+    if origin is not None:
+        return {"a": inner[1].__args__[0] if get_origin(inner[1]) is Literal else "b"}
+    return SAMPLES[annotation]
 
 
 def as_toml(value: object) -> object:

@@ -53,7 +53,7 @@ def test_the_tutorial_for_code_prints_what_it_shows(tmp_path: Path) -> None:
     page, steps = follow(CODE_PAGE.read_text(encoding="utf-8"), tmp_path)
     assert page == CODE_PAGE.read_text(encoding="utf-8"), "run python -m tests.tutorial"
     assert [step.code for step in steps] == [0, 0, 0, 0, 0, 1]
-    assert len(load_rubric(str(tmp_path / "lab.toml")).criteria) == 11
+    assert len(load_rubric(str(tmp_path / "lab.toml")).criteria) == 12
 
 
 def test_the_rubric_of_the_tutorial_is_valid(

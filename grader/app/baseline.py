@@ -7,7 +7,6 @@ import json
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from grader.base.errors import InputError
 from grader.base.problems import Problem
@@ -40,11 +39,12 @@ def read_baseline(path: str) -> frozenset[str]:
     shown = printable_path(path)
     data = read_capped(Path(path), _MAX_SIZE, shown=shown, advice="")
     try:
-        baseline: Any = json.loads(data)
+        baseline = json.loads(data)
         known = [str(row["fingerprint"]) for row in baseline["findings"]]
         is_baseline = baseline["schema"] == _SCHEMA
     except (ValueError, KeyError, TypeError, RecursionError):
-        is_baseline, known = False, []
+        is_baseline = False
+        known = []
     if not is_baseline:
         raise InputError(f"--baseline: {shown} is no baseline: --write-baseline writes one")
     return frozenset(known)
@@ -52,7 +52,7 @@ def read_baseline(path: str) -> frozenset[str]:
 
 def without_known(inspection: Inspection, known: frozenset[str]) -> Inspection:
     """Return an inspection without the findings of these fingerprints, which are counted."""
-    hidden = set[Problem]()
+    hidden = set()
     for problem, fingerprint in _fingerprinted(inspection):
         if fingerprint in known:
             hidden.add(problem)

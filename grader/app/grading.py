@@ -8,10 +8,11 @@ import re
 from collections.abc import Sequence
 from decimal import Decimal
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from grader.app.saving import is_source, save_texts
+from grader.app.saving import save_texts
 from grader.base.errors import GraderError, InputError
+from grader.base.records import Named
 from grader.base.source import Base
 from grader.base.text import enumerated, printable, shell_quoted
 from grader.lab.rubric.hint_levels import HintLevel
@@ -39,10 +40,9 @@ if TYPE_CHECKING:
 
 MAX_NAMED_CRITERIA = 8  # in a message
 _MAX_UP = 3  # folders between a package and what is graded in it
-_SHA256 = r"[0-9a-fA-F]{64}"
 
 
-class GradeRequest(NamedTuple):
+class GradeRequest(Named):
     """The options of `grader grade`: a submission to grade, its rubric, and the reports to make."""
 
     path: str  # of the submission; - for a URDF on standard input
@@ -75,14 +75,14 @@ class GradeRequest(NamedTuple):
         return None
 
 
-class GradeRun(NamedTuple):
+class GradeRun(Named):
     """A submission that was graded."""
 
     report: "Report"
     base: Base  # the place of the submission in a repository
     exit_code: ExitCode
     fix: "FixedFiles | None" = None  # the edits of all hints
-    besides: tuple[Path, ...] = ()  # the files that were read besides a single one
+    besides: Sequence[Path] = ()  # the files that were read besides a single one
 
     @property
     def reason(self) -> str:
@@ -99,7 +99,7 @@ def _warn_of_place(submission: "Submission", path: str, warn: Warn) -> None:
     """Warn of several candidates, and of a folder that is inside a package."""
     if submission.several:
         warn(submission.several)
-    if submission.package is not None or submission.is_single:
+    if submission.package or submission.is_single:
         return
     around = _package_around(path)
     if around:
@@ -125,14 +125,14 @@ def grade_request(request: GradeRequest, warn: Warn) -> GradeRun:
     rubric = requested_rubric(request)
     if threshold is not None:
         _check_threshold(rubric, request, threshold)
-    reports = frozenset(os.path.realpath(file) for _, file in request.saves if not is_source(file))
+    reports = frozenset(os.path.realpath(file) for _, file in request.saves)
     opening = Opening(request.max_size, read_arguments(request.arg or ()), reports=reports)
     submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
     _warn_of_place(submission, request.path, warn)
     report = grade(rubric, submission, tuple(request.part or ()))
     _warn_of_faults(report, warn)
     fix = None
-    if report.has_failures or request.fix is not None or request.hints is not None:
+    if report.has_failures or request.fix or request.hints is not None:
         from grader.app.hints_and_fix import (
             add_hints,  # late: many submissions lose nothing
         )
@@ -141,7 +141,7 @@ def grade_request(request: GradeRequest, warn: Warn) -> GradeRun:
             report, submission, request.hints, warn, is_fixed=request.fix is not None
         )
     folder = find_folder(request.path, submission.path) if submission.is_single else None
-    besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
+    besides = tuple(folder / path for path in submission.besides) if folder else ()
     return GradeRun(
         report, find_base(request.path, folder), exit_code(report, threshold), fix, besides
     )
@@ -160,12 +160,11 @@ def _check_threshold(
 
 def save_reports(request: GradeRequest, run: GradeRun) -> None:
     """Write the reports that `--save` names. Raises InputError: then none has changed."""
-    graded = Path(request.path, run.report.submission.path or "")
     texts = {
         file: render(run.report, kind, run.base, verbose=request.verbose)
         for kind, file in request.saves
     }
-    save_texts(texts, request.path, (graded, *run.besides))
+    save_texts(texts, request.path, run.besides)
 
 
 def _package_around(path: str) -> str:
@@ -184,7 +183,7 @@ def requested_rubric(request: GradeRequest) -> "Rubric":
     Raises GraderError if it is not the expected one or lacks a part that is named.
     """
     expected = request.expect_rubric
-    if expected is not None and not re.fullmatch(_SHA256, expected):
+    if expected is not None and not re.fullmatch(r"[0-9a-fA-F]{64}", expected):
         raise GraderError(
             "--expect-rubric takes the 64 digits that `grader rubric show` prints as "
             f"sha256, not {expected!r}"

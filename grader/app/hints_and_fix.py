@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from grader.base.errors import InputError, MachineError, OutOfTime
+from grader.base.grouping import known_values
 from grader.base.text import MAX_NAMED, enumerated, format_points, printable, printable_path
 from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.grading.report import INCOMPLETE_HINTS, Report
@@ -78,7 +79,7 @@ def files_to_fix(
     file. `besides` are the files that were read besides a single one, `others` what else the run
     reads or writes.
     """
-    files = {path: data for path, data in fix.files.items() if data is not None}
+    files = known_values(fix.files)
     if _is_folder(target, report):
         is_named_like_file = target.suffix.lower() in _FILES and not target.exists()
         if is_named_like_file or target.is_file():
@@ -101,7 +102,8 @@ def files_to_fix(
 def _refuse_several(files: Mapping[str, bytes], urdf: str | None, *, has_others: bool) -> None:
     """Raise InputError if edits change more than the graded file, which alone fits into a file."""
     if len(files) > 1 or (files and has_others and urdf not in files):
-        names, only = ", ".join(map(printable, files)), f"only {urdf}" if urdf in files else urdf
+        names = ", ".join(map(printable, files))
+        only = f"only {urdf}" if urdf in files else urdf
         raise InputError(f"--fix: the edits change {names}, not {only}: name a folder that exists")
 
 
@@ -133,6 +135,7 @@ def write_fix(
     names = enumerated(
         [printable(path) for path, data in fix.files.items() if data is not None], MAX_NAMED
     )
-    before, after = format_points(report.score), format_points(fix.report.score)
+    before = format_points(report.score)
+    after = format_points(fix.report.score)
     score = f"{before} -> {after} of {format_points(report.max_score)} points"
     return f"--fix: wrote {names} to {printable_path(target)}: {score}{''.join(gone)}"

@@ -1,15 +1,17 @@
 """What an inspection does not show: problems that a comment, a setting or an option ignores."""
 
 import os
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import NamedTuple
 
 from grader.app.settings import Settings
 from grader.base.ignore_comments import COMMENTED, MARK, IgnoreComment, read_ignore_comments
+from grader.base.names import last_part
 from grader.base.problems import Problem
+from grader.base.records import Named
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree
 from grader.report.inspection import Inspection
@@ -17,11 +19,11 @@ from grader.report.inspection import Inspection
 _ROBOT = ("URDF", "XACRO")  # the beginnings of the codes of a robot
 
 
-class Selection(NamedTuple):
+class Selection(Named):
     """Which problems are shown: of several codes that match a problem the longest one decides."""
 
-    select: tuple[str, ...] = ()  # from --select; without any all are selected
-    ignore: tuple[str, ...] = ()  # from --ignore
+    select: Sequence[str] = ()  # from --select; without any all are selected
+    ignore: Sequence[str] = ()  # from --ignore
     settings: Settings = Settings()
     folder: Path = Path()  # that the paths of problems begin in
 
@@ -32,7 +34,7 @@ class Selection(NamedTuple):
     def is_ignored(self, problem: Problem) -> bool:
         """Return whether an option or a setting ignores a problem."""
         codes = [*self.ignore, *self.settings.ignore]
-        if self.settings.file is not None and self.settings.per_file_ignores:
+        if self.settings.file and self.settings.per_file_ignores:
             top = self.settings.file.parent
             path = Path(os.path.relpath(self.folder / problem.location.path, top)).as_posix()
             for pattern, its_codes in self.settings.per_file_ignores.items():
@@ -51,7 +53,7 @@ def _matches(path: str, pattern: str) -> bool:
 
     It may be of the name of the file, or of a folder around it; * stands for slashes as well.
     """
-    name = path.rpartition("/")[2]
+    name = last_part(path)
     folder = pattern.rstrip("/") + "/*"
     return any(map(fnmatchcase, (path, name, path), (pattern, pattern, folder)))
 
@@ -69,9 +71,9 @@ def without_ignored(
         files: The paths of those whose comments count.
         selection: What options and settings say.
     """
-    comments = list(_comments(tree, files))
-    commented, useless = _by_comments(inspection, comments)
-    shown, count = set[Problem](), 0
+    commented, useless = _by_comments(inspection, list(_comments(tree, files)))
+    shown = set()
+    count = 0
     for problem in dict.fromkeys((*inspection.problems, *useless)):
         if problem in commented or selection.is_ignored(problem):
             count += selection.is_selected(problem)
@@ -87,7 +89,7 @@ def without_ignored(
         robots=tuple(robots),
         package_problems=tuple(others),
         ignored=count,
-        besides=inspection.besides if file is None else (*inspection.besides, file),
+        besides=inspection.besides if not file else (*inspection.besides, file),
     )
 
 
@@ -106,19 +108,26 @@ def _by_comments(
 
     Of one robot only the codes of robots in its own file are judged: others may need the rest.
     """
-    ignored, useless = set[Problem](), list[Problem]()
-    by_path: dict[str, list[Problem]] = {}
-    for problem in inspection.problems:
-        by_path.setdefault(problem.location.path, []).append(problem)
+    ignored = set()
+    useless = []
+    problems = inspection.problems
+    by_path: dict[str, list[tuple[int, int]]] = {}  # their lines, in order, and their numbers
+    for number, problem in enumerate(problems):
+        for where in filter(None, (problem.location, problem.around)):
+            by_path.setdefault(where.path, []).append((where.line, number))
+    for places in by_path.values():
+        places.sort()
     for comment in comments:
-        used = set[str]()
-        for problem in by_path.get(comment.location.path, ()):
-            codes = comment.matching(problem)
+        used = set()
+        places = by_path.get(comment.location.path, [])
+        first = bisect_left(places, (comment.location.line,))
+        for _, number in places[first : bisect_left(places, (comment.last + 1,))]:
+            codes = [code for code in comment.codes if problems[number].is_meant_by(code)]
             used.update(codes)
             if codes:
-                ignored.add(problem)
+                ignored.add(problems[number])
         left = [code for code in comment.codes if code not in used]
-        if inspection.extent is None:
+        if not inspection.extent:
             if comment.location.path != inspection.path:
                 continue
             left = [code for code in left if code.startswith(_ROBOT)]

@@ -6,10 +6,11 @@
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
 from grader.base.names import did_you_mean
+from grader.base.records import Named
 from grader.base.toml_file import KeyTable, TomlRowReader, raise_complaints, read_toml
 from grader.base.toml_types import simple_type, toml_type
 from grader.files.reading import read_capped
@@ -18,7 +19,7 @@ from grader.workspace.api import EVERY_KIND, RULES
 
 _NAMES = ("grader.toml", "pyproject.toml")
 _MAX_SIZE = 256 * 1024  # bytes of such a file
-_CODES = toml_type(tuple[str, ...])
+_CODES = toml_type(Strings)
 _TEXT = simple_type(
     "a text",
     {"type": "string", "minLength": 1},
@@ -28,26 +29,26 @@ _TABLE = KeyTable(
     "table of settings",
     {
         "ignore": _CODES,
-        "per-file-ignores": toml_type(Mapping[str, tuple[str, ...]]),
+        "per-file-ignores": toml_type(Mapping[str, Strings]),
         "distro": toml_type(Release),
         "rubric": _TEXT,
     },
 )
 
 
-class Settings(NamedTuple):
+class Settings(Named):
     """What a project says about its inspection."""
 
     file: Path | None = None  # that says so; None without one
-    ignore: tuple[str, ...] = ()  # codes of problems, or their beginnings
-    per_file_ignores: Mapping[str, tuple[str, ...]] = {}  # the same by patterns of paths
+    ignore: Strings = ()  # codes of problems, or their beginnings
+    per_file_ignores: Mapping[str, Strings] = {}  # the same by patterns of paths
     distro: Release | None = None  # of ROS 2
     rubric: str | None = None  # an id or a file
 
     @property
     def stated(self) -> StatedReleases | None:
         """The release that it gives, and the file that does; None without one."""
-        if self.file is None or self.distro is None:
+        if not self.file or self.distro is None:
             return None
         return StatedReleases((self.distro,), (self.file.name,))
 
@@ -67,7 +68,7 @@ def read_settings(path: str) -> Settings:
             file = above / name
             if file.is_file() and not file.is_symlink():
                 settings = _read_file(file)
-                if settings is not None:
+                if settings:
                     return settings
     return Settings()
 
@@ -76,7 +77,7 @@ def _read_file(file: Path) -> Settings | None:
     """Return the settings in a file; None for a pyproject.toml without them. Raises GraderError."""
     shown = Path(os.path.relpath(file))
     data = read_capped(file, _MAX_SIZE, shown=str(shown), advice="")
-    keys: tuple[str, ...] = ()
+    keys: Strings = ()
     if file.name == _NAMES[1]:
         keys = ("tool", "grader")
         if b"grader" not in data:  # its mistakes are not read
@@ -95,11 +96,11 @@ def _read_file(file: Path) -> Settings | None:
         for code, why in _unknown_codes(codes):
             reader.complain((*keys, "per-file-ignores", pattern), f"per-file-ignores: {code}{why}")
     raise_complaints(reader.complaints, text, shown)
-    fields: dict[str, Any] = {key.replace("-", "_"): value for key, value in row.items()}
+    fields = {key.replace("-", "_"): value for key, value in row.items()}
     return Settings(file, **fields)
 
 
-def read_codes(option: str, texts: Iterable[str]) -> tuple[str, ...]:
+def read_codes(option: str, texts: Iterable[str]) -> Strings:
     """Return the codes that an option names, with or without commas. Raises InputError."""
     codes = tuple(code.strip() for text in texts for code in text.split(","))
     for code, why in _unknown_codes(codes):

@@ -4,15 +4,17 @@ Numbers are written as a person writes them.
 """
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from math import isclose, isfinite
 
 from grader.base import markup
+from grader.base.grouping import StringsByName, group_values
+from grader.base.patterns import on_use
 from grader.base.source import Edit, Edits, Source
 
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
 _SAME = 1e-3  # relative: -1.57 is -pi/2
-_PIECE = re.compile(r"(\s*)(\S+)")
+_PIECE = on_use(r"(\s*)(\S+)")
 
 
 def element_text(source: Source, start: int) -> str:
@@ -23,19 +25,18 @@ def element_text(source: Source, start: int) -> str:
 def with_attribute(source: Source, start: int, attribute: str, value: str) -> Edit:
     """Return the edit that sets an attribute of the start tag at an offset, or adds it."""
     existing = markup.attribute(source.text, start, attribute)
-    if existing is None:
+    if not existing:
         end = markup.name_end(source.text, start)
         return source.edit(start, end, f'{source.text[start:end]} {attribute}="{value}"')
-    head, tail = (
-        source.text[existing.start : existing.value_start],
-        source.text[existing.value_end : existing.end],
-    )
+    head = source.text[existing.start : existing.value_start]
+    tail = source.text[existing.value_end : existing.end]
     return source.edit(existing.start, existing.end, f"{head}{value}{tail}")
 
 
 def with_child(source: Source, start: int, xml: str) -> Edit:
     """Return the edit that inserts an element as the first child of the one at an offset."""
-    text, newline = source.text, "\r\n" if "\r\n" in source.text else "\n"
+    text = source.text
+    newline = "\r\n" if "\r\n" in source.text else "\n"
     end, is_empty = markup.head_end(text, start)
     indent = markup.child_indentation(text, start)
     child = f"{newline}{indent}{markup.indented(xml, indent, newline)}"
@@ -77,7 +78,8 @@ def merged(old: str, new: str) -> str:
 
     Numbers that stay, and the space between all of them, are as in the old text.
     """
-    before, after = _PIECE.findall(old), new.split()
+    before = _PIECE.findall(old)
+    after = new.split()
     if len(before) != len(after):
         return new
     pieces = zip(before, after, strict=True)
@@ -90,7 +92,8 @@ def merged(old: str, new: str) -> str:
 def _merge_one(old: str, new: str) -> str:
     """Return the new number, in the old notation if it is the same or only its sign changes."""
     try:
-        before, after = float(old), float(new)
+        before = float(old)
+        after = float(new)
     except ValueError:
         return new
     if isclose(before, after, rel_tol=_SAME, abs_tol=_SAME / 100):
@@ -146,7 +149,7 @@ def edits_before(
     None where they change what the earlier ones wrote. `read` returns a file as it is.
     """
     by_file = _group_by_file(earlier)
-    moved: list[Edit] = []
+    moved = []
     for edit in later:
         if edit.path not in by_file:
             moved.append(edit)
@@ -176,10 +179,7 @@ def _offset_before(before: Source, earlier: Sequence[Edit], edit: Edit) -> int |
 
 
 def _group_by_file(edits: Iterable[Edit]) -> dict[str, list[Edit]]:
-    by_file: dict[str, list[Edit]] = {}
-    for edit in edits:
-        by_file.setdefault(edit.path, []).append(edit)
-    return by_file
+    return group_values((edit.path, edit) for edit in edits)
 
 
 def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
@@ -213,14 +213,15 @@ def tag_edits(source: Source, start: int, old: str, new: str) -> Edits:
     edits = [source.edit(start, start + len(old) + 1, f"<{new}")]
     end = markup.element_end(source.text, start)
     closing = re.search(rf"</{re.escape(old)}\s*>\Z", source.text[start:end])
-    if closing is not None:
+    if closing:
         edits.append(source.edit(start + closing.start(), end, f"</{new}>"))
     return tuple(edits)
 
 
 def renamed_tag(source: Source, start: int, new: str) -> Edits:
     """Return the edits that give the element at an offset another tag, at its start and its end."""
-    text, end = source.text, markup.name_end(source.text, start)
+    text = source.text
+    end = markup.name_end(source.text, start)
     edits: Edits = (source.edit(start, end, f"<{new}"),)
     tail = markup.element_end(text, start)
     closing = text.rfind("</", start, tail)
@@ -235,18 +236,18 @@ def renamed_attribute(source: Source, start: int, old: str, new: str) -> Edits:
     There is none where the attribute is not written there.
     """
     written = markup.attribute(source.text, start, old)
-    if written is None:
+    if not written:
         return ()
     rest = source.text[written.start + len(old) : written.end]
     return (source.edit(written.start, written.end, f"{new}{rest}"),)
 
 
-def empty_element(tag: str, attributes: Mapping[str, str]) -> str:
+def empty_element(tag: str, attributes: StringsByName) -> str:
     """Return the text of an element without content."""
     return f"<{tag}{attributes_text(attributes)}/>"
 
 
-def attributes_text(attributes: Mapping[str, str]) -> str:
+def attributes_text(attributes: StringsByName) -> str:
     """Return attributes as they stand behind the name of a tag."""
     return "".join(f' {name}="{escaped(value)}"' for name, value in attributes.items())
 

@@ -2,6 +2,8 @@
 
 import errno
 
+from grader.base.grouping import Strings
+
 # Why a file itself cannot be opened. Other errors, such as EIO, EMFILE and ESTALE, are faults of
 # the machine.
 _OF_FILES = (
@@ -63,6 +65,17 @@ class FileError(InputError):
         return f"{self.path} {self.reason}"
 
 
+class RecordingError(InputError):
+    """Why a recording of `ros2 bag record` cannot be read.
+
+    With `is_limit`, a program that reads more might read it, so a person has to look.
+    """
+
+    def __init__(self, message: str, *, is_limit: bool = False) -> None:
+        super().__init__(message)
+        self.is_limit = is_limit
+
+
 class MachineError(GraderError):
     """A fault of the machine while a submission is read, as of its disk.
 
@@ -87,7 +100,7 @@ class RubricError(GraderError):
     grader.base.errors.RubricError: there is no rubric 'lab66'; did you mean 'lab6'? ...
     """
 
-    def __init__(self, complaints: tuple[str, ...]) -> None:
+    def __init__(self, complaints: Strings) -> None:
         super().__init__("\n".join(complaints))
         self.complaints = complaints
 
@@ -133,7 +146,7 @@ class MissingElement(LookupError):
         self,
         kind: str,
         name: str,
-        known: tuple[str, ...] = (),
+        known: Strings = (),
         *,
         message: str = "",
         detail: str = "",

@@ -7,13 +7,14 @@ from the grammar of the file's language; it is searched when it is asked for.
 import posixpath
 import re
 
+from grader.base.grouping import Span, Strings
 from grader.base.source import Location, Source, SourceOf
 
-_Language = tuple[str, ...]  # patterns, of which the first that matches counts
+_Language = Strings  # patterns, of which the first that matches counts
 
 _QUOTED = r"""(?s:"(?:[^"\\]|\\.)*+"|'(?:[^'\\]|\\.)*+')"""
 # A tag that is not closed ends with its line, as a comment does: it may be as long as the file.
-_XML: _Language = (
+_XML = (
     r"<!--[^\n]*?(?:-->|(?=\r?$))",
     r"""<[/?]?[^\s=/>"'<]*+(?:"[^"]*"|'[^']*'|[^>"'<])*+>|<[^>\n]*>?""",
     r"""[^\s=<>"'/]+\s*=\s*(?:"[^"<]*"|'[^'<]*'|"[^"\n]*|'[^'\n]*)""",
@@ -22,12 +23,12 @@ _XML: _Language = (
 )
 _YAML_START = r"(?:[&!][^\s,\[\]{}]*[ ]+)*+"
 _YAML_QUOTED = r"""(?s:"(?:[^"\\]|\\.)*+"|'(?:[^']|'')*+')"""
-_YAML_BLOCK: _Language = (
+_YAML_BLOCK = (
     _YAML_START + _YAML_QUOTED,
     r"-(?=\s)|[|>][-+\d]*|\[[^\[\]\n]*\]|\{[^{}\n]*\}",
     _YAML_START + r"(?:\$\([^()\n]*\)|:(?=\S)|[ \t]++(?![#\s])|[^\s:])++",
 )
-_YAML_FLOW: _Language = (
+_YAML_FLOW = (
     _YAML_START + _YAML_QUOTED,
     r"\[[^\[\]\n]*\]|\{[^{}\n]*\}",
     _YAML_START + r"(?:\$\([^()\n]*\)|:(?=[^\s,\[\]{}])|[ \t]++(?![#\s])|[^\s:,\[\]{}])++",
@@ -35,7 +36,7 @@ _YAML_FLOW: _Language = (
 # A path in a text, of which no quote is the start.
 _PATH = r"""(?:\w+:/|\$\([^()\n]*\)|~)?/[^\s"'<>]*+"""
 _BRACKETED = r"\[[^\[\]\n]*\]|\([^()\n]*\)|\{[^{}\n]*\}"
-_PYTHON: _Language = (
+_PYTHON = (
     r'''(?si:[rbuf]{0,2}(?:"""(?:[^\\]|\\.)*?"""|\'\'\'(?:[^\\]|\\.)*?\'\'\'))''',
     r"(?i:[rbuf]{0,2})" + _QUOTED,
     r"(?:import|from)\s[^\n#;]*|(?:class|(?:async )?def)\s+\w+",
@@ -43,7 +44,7 @@ _PYTHON: _Language = (
     r"[@\w]\w*+(?:\.\w++)*",
     _BRACKETED,
 )
-_CPP: _Language = (
+_CPP = (
     r'(?s:(?:u8|[uUL])?R"([^()\s\\]*)\(.*?\)\1")',
     r"(?:u8|[uUL])?" + _QUOTED,
     r"#[^\n]*",
@@ -52,12 +53,12 @@ _CPP: _Language = (
     r"~?\w++(?:(?:::~?|\.|->)\w++)*",
     _BRACKETED,
 )
-_CMAKE: _Language = (
+_CMAKE = (
     r"(?s:\[(=*)\[.*?\]\1\])",
     _QUOTED,
     r'(?:[^\s()#"\\]|\\.)++',
 )
-_WORDS: _Language = (r"[\w$@/~-]++(?:[.:=]+[\w$@/~-]++)*", _QUOTED)
+_WORDS = (r"[\w$@/~-]++(?:[.:=]+[\w$@/~-]++)*", _QUOTED)
 
 _PYTHON_ENDINGS = (".py", ".pyi")
 _XML_ENDINGS = (".xml", ".urdf", ".xacro", ".sdf", ".srdf", ".world", ".launch", ".gazebo", ".dae")
@@ -70,7 +71,7 @@ _YAML_TOKEN = rf"(?<![^\s,\[{{:])(?:{_YAML_QUOTED})|(?<!\S)#[^\n]*|[][{{}}]"
 _MAX_BEFORE = 4_000  # characters, in which a bracket of YAML is searched
 
 
-def find_end(source: Source, where: Location) -> tuple[int, int]:
+def find_end(source: Source, where: Location) -> Span:
     """Return the line and the column after the last character of what begins at a place of a text.
 
     Both count from 1, columns in characters, as in a Location. It is the place itself where nothing
@@ -91,7 +92,7 @@ def end_offset(source: Source, start: int) -> int:
         return start
     for pattern in _choose_language(source, start):
         match = re.compile(pattern, re.MULTILINE).match(text, start)
-        if match is not None:
+        if match:
             return start + len(match[0].rstrip())
     return start + int(not text[start].isspace())
 
@@ -104,7 +105,7 @@ def ended(where: Location, source_of: SourceOf) -> Location:
     if where.end_line:
         return where
     source = source_of(where.path)
-    line, column = (where.line, where.column) if source is None else find_end(source, where)
+    line, column = (where.line, where.column) if not source else find_end(source, where)
     calls = tuple((macro, ended(at, source_of)) for macro, at in where.calls)
     return where._replace(calls=calls, end_line=line, end_column=column)
 

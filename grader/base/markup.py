@@ -5,21 +5,24 @@ The text need not be well-formed XML: what a lenient parser reads can be edited,
 
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
-_HEAD = re.compile(r"""<\s*+([^\s=/>"'<]*+)((?:"[^"]*+"|'[^']*+'|[^>"'<])*)(/?)>""")
-_TAG_NAME = re.compile(r"<\s*[^\s=/>]*")
-_ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
-_TOKEN = re.compile(
+from grader.base.grouping import Span
+from grader.base.patterns import on_use
+from grader.base.records import Named
+
+_HEAD = on_use(r"""<\s*+([^\s=/>"'<]*+)((?:"[^"]*+"|'[^']*+'|[^>"'<])*)(/?)>""")
+_TAG_NAME = on_use(r"<\s*[^\s=/>]*")
+_ATTRIBUTE = on_use(r"""\s*([^\s=/>"']+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
+_TOKEN = on_use(
     r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<!|</[^<>]*>?|<", re.DOTALL
 )
 # A word of the value of an attribute, in which an expression of xacro is a part.
-WORD_OF_VALUE = re.compile(r"(?:\$\{[^{}]*\}|\$\((?:[^()]|\([^()]*\))*+\)|[^\s$]|\$)+")
-_INDENTED = re.compile(r"\n([ \t]++)<(?![!?/])")  # a tag; the first one is one step from its parent
+WORD_OF_VALUE = on_use(r"(?:\$\{[^{}]*\}|\$\((?:[^()]|\([^()]*\))*+\)|[^\s$]|\$)+")
+_INDENTED = on_use(r"\n([ \t]++)<(?![!?/])")  # a tag; the first one is one step from its parent
 _STEP = "   "  # of indentation, where the file shows none
 
 
-class Attribute(NamedTuple):
+class Attribute(Named):
     """The offsets of the name, the value and the end of an attribute, such as xyz="0 0 1".
 
     The attribute is one of a start tag.
@@ -32,7 +35,7 @@ class Attribute(NamedTuple):
     end: int
 
     @property
-    def value(self) -> tuple[int, int]:
+    def value(self) -> Span:
         """The offsets of its value."""
         return self.value_start, self.value_end
 
@@ -66,7 +69,7 @@ def head_end(text: str, start: int) -> tuple[int, bool]:
     An empty element is written <a/>.
     """
     match = _HEAD.match(text, start)
-    if match is None:
+    if not match:
         end = text.find(">", start)
         return (end + 1 if end >= 0 else len(text)), text[end - 1 : end] == "/"
     return match.end(), match[3] == "/" or match[2].endswith("/")
@@ -83,7 +86,7 @@ def element_end(text: str, start: int) -> int:
     depth = 1
     while depth:
         token = _TOKEN.search(text, position)
-        if token is None:
+        if not token:
             return len(text)
         position = token.end()
         if token[0].startswith("</"):
@@ -124,9 +127,9 @@ def child_indentation(text: str, start: int) -> str:
     own_indentation = indentation(text, start)
     end, is_empty = head_end(text, start)
     token = None if is_empty else _TOKEN.search(text, end)
-    if token is not None and not token[0].startswith("</"):
+    if token and not token[0].startswith("</"):
         child_indent = indentation(text, token.start())
         if len(child_indent) > len(own_indentation):
             return child_indent
     step = _INDENTED.search(text)
-    return own_indentation + (step[1] if step is not None else _STEP)
+    return own_indentation + (step[1] if step else _STEP)

@@ -4,13 +4,16 @@ This text keeps its lines.
 """
 
 import re
-from typing import NamedTuple
 
-_MARKER = re.compile(r"^[ \t]*(<{7}|\|{7}|={7}|>{7})(?=\s|\Z)[^\n]*(?:\n|\Z)", re.MULTILINE)
-_VISIBLE = re.compile(r"[^\r\n]")
+from grader.base.grouping import Span
+from grader.base.patterns import on_use
+from grader.base.records import Named
+
+_MARKER = on_use(r"^[ \t]*(<{7}|\|{7}|={7}|>{7})(?=\s|\Z)[^\n]*(?:\n|\Z)", re.MULTILINE)
+_VISIBLE = on_use(r"[^\r\n]")
 
 
-class _MergeConflict(NamedTuple):
+class _MergeConflict(Named):
     """The offsets of a conflict, and those of the parts that are removed.
 
     Removed are its marker lines, and every version but the first.
@@ -18,23 +21,26 @@ class _MergeConflict(NamedTuple):
 
     start: int
     end: int
-    removed: tuple[tuple[int, int], ...]
+    removed: tuple[Span, ...]
 
 
 def find_conflicts(text: str) -> list[_MergeConflict]:
     """Return the conflicts of a text whose three marker lines are there."""
     conflicts: list[_MergeConflict] = []
-    opened: re.Match[str] | None = None
-    first_end: re.Match[str] | None = None
+    opened = None
+    first_end = None
     has_middle = False
     if "<<<<<<<" not in text:
         return conflicts
     for marker in _MARKER.finditer(text):
         match marker[1][0]:
             case "<":
-                opened, first_end, has_middle = marker, None, False
+                opened = marker
+                first_end = None
+                has_middle = False
             case "|" | "=":
-                first_end, has_middle = first_end or marker, has_middle or marker[1][0] == "="
+                first_end = first_end or marker
+                has_middle = has_middle or marker[1][0] == "="
             case _ if opened is not None and first_end is not None and has_middle:
                 removed = (opened.span(), (first_end.start(), marker.end()))
                 conflicts.append(_MergeConflict(opened.start(), marker.end(), removed))
@@ -65,7 +71,7 @@ def describe_conflicts(text: str, conflicts: list[_MergeConflict]) -> str:
     return f"{which}: keep one of the two versions and delete the three marker lines"
 
 
-class _ResolvedFile(NamedTuple):
+class _ResolvedFile(Named):
     """The bytes of a file with the first version of each conflict, and what is wrong.
 
     `line` is that of the first conflict.

@@ -1,11 +1,14 @@
 """The known name that is closest to a mistyped one: to suggest it, or to read it in its place."""
 
-import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from itertools import islice, product
 
+from grader.base.grouping import Strings, StringsByName
+from grader.base.patterns import on_use
 from grader.base.text import quoted
+
+_Words = Strings
 
 _MAX_CANDIDATES = 300
 _MAX_KNOWN = 1000
@@ -13,9 +16,9 @@ _MAX_CACHED = 4096  # names whose words are kept
 _LIKENESS, _MARGIN = 0.7, 0.1  # of difflib's ratios
 MAX_LENGTH = 60  # characters of names that are compared
 MAX_GUESSES = 50  # names of one file that are compared, because that takes long
-_CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
-_WORD = re.compile(r"\d+|[^\W\d_]+")
-_LETTER_BORDER = re.compile(r"(?<!\d) (?!\d)")
+_CAMEL = on_use(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
+_WORD = on_use(r"\d+|[^\W\d_]+")
+_LETTER_BORDER = on_use(r"(?<!\d) (?!\d)")
 _AXES_AND_SIDES = frozenset("xyzlrfb")
 # Words of side, place, axis and measure: none is a misspelling of another one.
 _DISTINCT = frozenset(
@@ -82,7 +85,8 @@ def closest(
 
     if len(name) > MAX_LENGTH:
         return None
-    lower, candidates = name.lower(), _candidates(name, known)
+    lower = name.lower()
+    candidates = _candidates(name, known)
     reordered = _with_same_words(name, candidates)
     if reordered is not None:
         return reordered
@@ -95,7 +99,7 @@ def closest(
     return candidates[matches[0]] if matches else None
 
 
-def _with_same_words(name: str, candidates: Mapping[str, str]) -> str | None:
+def _with_same_words(name: str, candidates: StringsByName) -> str | None:
     """Return the known name that has the several words of another one in another order."""
     words = sorted(_words(name))
     if len(words) > 1:
@@ -117,8 +121,9 @@ def _are_equally_similar(name: str, matches: Sequence[str]) -> bool:
 
 def _candidates(name: str, known: Iterable[str]) -> dict[str, str]:
     """Return the names that a name may stand for, by their lower case; no sibling of it."""
-    lower, sides = name.lower(), _sides(name)
-    candidates: dict[str, str] = {}
+    lower = name.lower()
+    sides = _sides(name)
+    candidates = {}
     for other in sorted(known, reverse=True):
         if other != name and len(other) <= MAX_LENGTH:
             candidates[other.lower()] = other
@@ -131,17 +136,17 @@ def _candidates(name: str, known: Iterable[str]) -> dict[str, str]:
     }
 
 
-def _sides(name: str) -> tuple[str, ...]:
+def _sides(name: str) -> _Words:
     """Return the numbers and the words of side, place and measure in a name."""
     return _sides_in(_words(name))
 
 
 @lru_cache(maxsize=_MAX_CACHED)
-def _sides_in(words: tuple[str, ...]) -> tuple[str, ...]:
+def _sides_in(words: _Words) -> _Words:
     return tuple(sorted(word for word in words if word.isdigit() or word in _DISTINCT))
 
 
-def _are_siblings(sides: tuple[str, ...], others: tuple[str, ...]) -> bool:
+def _are_siblings(sides: _Words, others: _Words) -> bool:
     """Return whether two names differ in the numbers or sides that both of them have.
 
     Numbers of another length may be mistyped.
@@ -161,7 +166,8 @@ def is_misspelling(name: str, known: str) -> bool:
     """
     if closest(name, [known]) is None:
         return False
-    words, others = name.split("_"), known.split("_")
+    words = name.split("_")
+    others = known.split("_")
     if len(words) != len(others):
         return True
     for word, other in zip(words, others, strict=True):
@@ -190,6 +196,16 @@ def similar_there(name: str, known: Iterable[str]) -> str:
     return f"; there is {quoted(match)}" if match else ""
 
 
+def first_part(path: str) -> str:
+    """Return what a path or a name has before its first slash."""
+    return path.partition("/")[0]
+
+
+def last_part(path: str) -> str:
+    """Return what a path or a name has behind its last slash."""
+    return path.rpartition("/")[2]
+
+
 def folded(name: str) -> str:
     """Return the letters and digits of a name in lower case.
 
@@ -207,10 +223,11 @@ def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
     differ in a known word of four letters or more, two in seven or more. `suffix`, the kind of
     thing that is named, may be missing at the end.
     """
-    words, others = _words(name), set(islice(known, _MAX_KNOWN + 1)) - {name}
+    words = _words(name)
+    others = set(islice(known, _MAX_KNOWN + 1)) - {name}
     if len(others) > _MAX_KNOWN:
         return None
-    distances: dict[str, tuple[int, bool]] = {}
+    distances = {}
     for other in others:
         distance = _distance(words, _words(other), suffix)
         if distance is not None:
@@ -235,23 +252,21 @@ def are_of_one_side(name: str, other: str) -> bool:
     return _sides(name) == _sides(other) and not is_other
 
 
-def _words(name: str) -> tuple[str, ...]:
+def _words(name: str) -> _Words:
     return _cached_words(name[: MAX_LENGTH + 1])
 
 
 @lru_cache(maxsize=_MAX_CACHED)
-def _cached_words(name: str) -> tuple[str, ...]:
+def _cached_words(name: str) -> _Words:
     return tuple(_WORD.findall(_CAMEL.sub(" ", name).casefold()))
 
 
 @lru_cache(maxsize=_MAX_CACHED)
-def _letters(words: tuple[str, ...]) -> str:
+def _letters(words: _Words) -> str:
     return _LETTER_BORDER.sub("", " ".join(words))
 
 
-def _distance(
-    name: tuple[str, ...], known: tuple[str, ...], suffix: str
-) -> tuple[int, bool] | None:
+def _distance(name: _Words, known: _Words, suffix: str) -> tuple[int, bool] | None:
     """Return how many letters differ, and whether the suffix is missing.
 
     Returns None for names that are not near.
@@ -274,6 +289,7 @@ def _distance(
     return differing, is_cut
 
 
+@lru_cache(maxsize=_MAX_CACHED)  # names share their words
 def _differing_letters(word: str, known: str) -> int | None:
     """Return how many letters or exchanged pairs differ in two words.
 
@@ -284,9 +300,12 @@ def _differing_letters(word: str, known: str) -> int | None:
     most = _most_differing(word, known)
     if abs(len(word) - len(known)) > most:
         return None
-    before, row = [0], [*range(len(known) + 1)]
+    before = [0]
+    row = list(range(len(known) + 1))
     for i, letter in enumerate(word):
-        earlier, before, row = before, row, [i + 1]
+        earlier = before
+        before = row
+        row = [i + 1]
         for j, other in enumerate(known):
             cost = min(before[j] + (0 if letter == other else 1), before[j + 1] + 1, row[j] + 1)
             if i and j and (letter, other) == (known[j - 1], word[i - 1]):

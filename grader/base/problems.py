@@ -2,15 +2,17 @@
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
-from typing import Literal, NamedTuple
+from typing import Literal
 
+from grader.base.grouping import Strings
+from grader.base.records import Named
 from grader.base.source import Edits, Location
 
 Severity = Literal["error", "warning", "note"]
 Effect = Literal["rejects", "undetermined", "drops", "loads", "other"]
 
 
-class Kind(NamedTuple):
+class Kind(Named):
     """One kind of problem. docs/examples/ says how to fix the file.
 
     The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of
@@ -26,7 +28,7 @@ class Kind(NamedTuple):
     is_before_ros: bool = False  # xacro stops at it, before ROS 2 gets the file
 
 
-class Fix(NamedTuple):
+class Fix(Named):
     """The edits after which a problem is gone, and what they assume."""
 
     edits: Edits
@@ -80,7 +82,7 @@ class Fixes:
 NO_FIXES = Fixes(tuple)
 
 
-class Problem(NamedTuple):
+class Problem(Named):
     """One problem of one file."""
 
     kind: Kind
@@ -94,7 +96,7 @@ class Problem(NamedTuple):
     # the call or element in which its location is, whose first line comments are beside
     around: Location | None = None
     cause: str = ""  # what it has in common with others that one mistake makes
-    names: tuple[str, ...] = ()  # by which a message of a log may mean it
+    names: Strings = ()  # by which a message of a log may mean it
 
     @property
     def code(self) -> str:

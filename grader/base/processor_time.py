@@ -16,6 +16,7 @@ GRADE_SECONDS = 20  # of processor time for `grader grade`
 INSPECT_SECONDS = 60  # and for `grader inspect`
 CAN_LIMIT = hasattr(signal, "setitimer")  # not on Windows
 _GRACE = 10  # more seconds, after which the process is ended, whatever it does
+_DRIFT = 1.25  # the system counts ticks for this end, some per cent more than a long process used
 _AGAIN = 2.0  # seconds after which it is raised again: where no exception can be, it is lost
 _SPARE = 0.25  # seconds of a limit of the shell that are left to say so
 
@@ -35,7 +36,7 @@ def limit_processor_time(seconds: float) -> None:
     reason = f"this takes more than {seconds:g} s of processor time"
     soft, hard = _own_limits()
     used = time.process_time()
-    end = min(ceil(used + seconds) + _GRACE, soft)
+    end = min(ceil(used * _DRIFT + seconds) + _GRACE, soft)
     limit = min(soft, hard)
     if limit < used + seconds + _SPARE:
         seconds = max(limit - _SPARE - used, 0.001)

@@ -6,7 +6,9 @@ files after each change of one of them.
 
 from collections.abc import Callable, Hashable
 from functools import lru_cache
-from typing import Any, Generic, NamedTuple, Protocol, TypeVar, TypeVarTuple
+from typing import Any, Generic, Protocol, TypeVar, TypeVarTuple
+
+from grader.base.records import Named
 
 _Names = TypeVarTuple("_Names")
 _T = TypeVar("_T")
@@ -70,7 +72,7 @@ class Answers(Generic[_Asked]):
         return all(question(other) == answer for question, answer in self._answers)
 
 
-class _Kept(NamedTuple):
+class _Kept(Named):
     answers: Answers[Any]
     result: Any
     cost: _Cost
@@ -86,7 +88,8 @@ class Memory:
 
     def __init__(self, most: int = 4, check: Callable[[], object] = lambda: None) -> None:
         """`most` results are kept. `check` is called before each work, and raises what ends it."""
-        self._most, self._check = most, check
+        self._most = most
+        self._check = check
         self._kept: dict[Hashable, _Kept] = {}
         self._used: set[Hashable] = set()
 
@@ -107,11 +110,12 @@ class Memory:
         """
         self._check()
         kept = self._kept.get(key)
-        if kept is not None and kept.answers.answers_alike(asked) and work.repeat(kept.cost):
+        if kept and kept.answers.answers_alike(asked) and work.repeat(kept.cost):
             self._used.add(key)
             result: _T = kept.result
             return result
-        answers, before = Answers(asked), work.mark()
+        answers = Answers(asked)
+        before = work.mark()
         result = make(answers)
         answers.close()
         after = work.mark()

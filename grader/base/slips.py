@@ -1,14 +1,14 @@
 """A slip: a word of a file that surely stands for another one."""
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Sequence
 
 from grader.base.problems import Fix, Fixes
+from grader.base.records import Named
 from grader.base.source import Edit, Edits, Location
 from grader.base.text import enumerated
 
 
-class Slip(NamedTuple):
+class Slip(Named):
     """What is written, what it surely stands for, and what ROS 2 does with it as it is written.
 
     Readers find slips in the file alone. A slip changes how something is written, a tag, a name, a
@@ -27,6 +27,9 @@ class Slip(NamedTuple):
     def fix(self) -> Fix:
         """The fix that writes what is meant."""
         return Fix(self.edits, self.assumption)
+
+
+Slips = Iterator[Slip]
 
 
 def make_slip(

@@ -7,6 +7,8 @@ from functools import cached_property
 from itertools import accumulate
 from typing import Literal, NamedTuple
 
+from grader.base.records import Named
+
 _BYTES_OF_SHORT_FILE = 4096
 # In text that an XML parser has accepted, `<` and a name outside comments and CDATA opens a tag.
 _START_TAG = r"(?s)<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<(?![/!?])"
@@ -35,7 +37,7 @@ class Location(NamedTuple):
         return f"{self.path}:{self.line}"
 
 
-class Edit(NamedTuple):
+class Edit(Named):
     """A change of the text of one file: `old`, at a place, becomes `new`.
 
     Nothing else changes.
@@ -74,7 +76,14 @@ class Source:
 
         Without it the text must be well-formed XML.
         """
-        self.path, self.text, self._given_tags = path, text, tags
+        self.path = path
+        self.text = text
+        self._given_tags = tags
+
+    @classmethod
+    def decoded(cls, path: str, data: bytes) -> "Source":
+        """Return the text of a file in UTF-8, in which other bytes are replaced."""
+        return cls(path, data.decode("utf-8", "replace"))
 
     @cached_property
     def _lines(self) -> list[int]:
@@ -126,7 +135,7 @@ class Source:
         from grader.base import markup  # late: its patterns are for a fault
 
         written = markup.attribute(self.text, start, name)
-        return written.start if written is not None else start
+        return written.start if written else start
 
     @property
     def cost(self) -> int:
@@ -160,7 +169,7 @@ class Source:
 SourceOf = Callable[[str], Source | None]  # returns the text of a file by its path
 
 
-class Base(NamedTuple):
+class Base(Named):
     """The location of a submission in a repository.
 
     It is the folder of its paths with a slash, or the archive around them.
@@ -203,6 +212,6 @@ def place(
 
     It may also be the place of one of its attributes, or of an element inside.
     """
-    if element is not None:
+    if element:
         return LazyLocation(element.source, element.tag, attribute, inside)
     return None

@@ -8,17 +8,40 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from grader.base.grouping import Span
+from grader.base.patterns import on_use
+
 # Characters that XML 1.0 does not allow, not even as a reference; bytes that are not UTF-8 are
 # surrogates here.
-ILLEGAL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+ILLEGAL = on_use("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 # The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space
 # as well, or contains `##[`; the agent of Azure Pipelines, if it contains `##vso[`.
-_LINE_COMMAND = re.compile(r"^([^\S\n]*+):(?=:)", re.MULTILINE)
-_TAG_COMMAND = re.compile(r"##(vso)?\[", re.IGNORECASE)
+_LINE_COMMAND = on_use(r"^([^\S\n]*+):(?=:)", re.MULTILINE)
+_TAG_COMMAND = on_use(r"##(vso)?\[", re.IGNORECASE)
 _MAX_NAME = 60  # characters of a name that are shown
 _MAX_FILE_NAME = 100  # characters of a path that are shown, its last ones
 MAX_NAMED = 5  # names that a message lists, where nothing asks for more or fewer
 MAX_PEOPLE = 12  # whom a line lists
+
+
+def first_part(name: str) -> str:
+    """Return what is before the first dot of a name."""
+    return name.partition(".")[0]
+
+
+def last_part(name: str) -> str:
+    """Return what is behind the last dot of a name."""
+    return name.rpartition(".")[2]
+
+
+def blanked(match: re.Match[str]) -> str:
+    """Return as many spaces as a match has characters."""
+    return " " * len(match[0])
+
+
+def indent_of(line: str) -> str:
+    """Return the space at the beginning of a line."""
+    return line[: len(line) - len(line.lstrip())]
 
 
 def printable(text: str) -> str:
@@ -133,7 +156,7 @@ def in_backticks(texts: Iterable[str]) -> str:
 
 
 def enumerated(
-    items: Collection[str], most: int | None = None, word: str = "and", separator: str = ", "
+    items: Iterable[str], most: int | None = None, word: str = "and", separator: str = ", "
 ) -> str:
     """Return "a, b and c"; of more than `most` items the first ones: "a, b and 3 more"."""
     names = list(items)
@@ -166,7 +189,7 @@ def people_text(names: Collection[str], most: int = MAX_PEOPLE) -> str:
 def first_lines(lines: Sequence[str], most: int) -> list[str]:
     """Return the lines; of more than `most` the first ones, and a line "... and 3 more"."""
     if len(lines) <= most:
-        return [*lines]
+        return list(lines)
     return [*lines[:most], f"... and {len(lines) - most} more"]
 
 
@@ -223,7 +246,7 @@ def texts_in(value: Any) -> Iterator[str]:
             yield from texts_in(list(value.values()))
 
 
-def comment_spans(text: str) -> Iterator[tuple[int, int]]:
+def comment_spans(text: str) -> Iterator[Span]:
     """Yield the offsets at which each comment begins, and at which its `-->` does."""
     start = text.find("<!--")
     while start >= 0 and (end := text.find("-->", start + 4)) >= 0:

@@ -7,17 +7,22 @@ key, and the lines are found in the text. Values are converted by the type of th
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
+from itertools import starmap
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import tomli
 
 from grader.base.errors import RubricError
+from grader.base.grouping import Strings, group_values
 from grader.base.names import did_you_mean
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.text import cut, enumerated, printable, printable_path
 from grader.base.toml_types import TomlType, WrongValue, simple_type
 
 TomlPath = tuple[str | int, ...]
+_Lines = dict[TomlPath, int]  # of keys by their paths
 TomlRow = dict[str, Any]
 _NOTHING: Mapping[str, Any] = {}
 
@@ -36,7 +41,7 @@ _TOKEN = r"""(?sx)
     | [ \t\r]+
     """
 # tomli stores each beginning of a dotted key: memory that grows with the square of its parts.
-_LONG_KEY = re.compile(
+_LONG_KEY = on_use(
     r"""(?m)(?:^|[\[{,])[ \t]*+"""
     r"""((?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+)"""
     rf"""{{{_MAX_DEPTH}}})"""
@@ -79,7 +84,7 @@ _SLIPS = (
 _MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
 _MAX_SHOWN = 40  # characters of a value
 _MAX_BITS = 1000  # of a whole number that is written out
-_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_BARE_KEY = on_use(r"[A-Za-z0-9_-]+")
 
 
 def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
@@ -107,7 +112,8 @@ def raise_complaints(complaints: Sequence[tuple[TomlPath, str]], text: str, path
     The lines are in the order of the file.
     """
     if complaints:
-        lines, shown = key_lines(text), printable_path(path)
+        lines = key_lines(text)
+        shown = printable_path(path)
         complaints_by_line = one_line_each(
             path, [(find_line(lines, at), what) for at, what in complaints]
         )
@@ -121,9 +127,9 @@ def one_line_each(path: Path, complaints: Iterable[tuple[int, str]]) -> list[str
 
     What several lines share stands there once, with all of them.
     """
-    places: dict[str, list[int]] = {}
-    for line, what in sorted(complaints, key=lambda complaint: complaint[0]):
-        places.setdefault(what, []).append(line)
+    places = group_values(
+        (what, line) for line, what in sorted(complaints, key=lambda complaint: complaint[0])
+    )
     return [
         f"{printable_path(path)}:{line}: {what}{_also(other)}"
         for what, (line, *other) in places.items()
@@ -150,7 +156,8 @@ def _syntax_mistake(error: str, text: str) -> str:
     # Else the place stays; a file that is not UTF-8 text may have the character of no text.
     opened = text.rfind(_CLOSING.get(said, _HERE))
     if opened >= 0:
-        row, at = text.count("\n", 0, opened) + 1, opened - text.rfind("\n", 0, opened)
+        row = text.count("\n", 0, opened) + 1
+        at = opened - text.rfind("\n", 0, opened)
         said = "a text in quotes begins here and does not end"
     for start, words in _SAID.items():
         if said.startswith(start):
@@ -163,7 +170,7 @@ def _syntax_mistake(error: str, text: str) -> str:
     meant = said[0].lower() + said[1:]
     for pattern, words in _SLIPS:
         slip = re.search(pattern, marked)
-        if slip is not None:
+        if slip:
             meant = words.format(*slip.groups())
             break
     around = (before + after).strip() or "an empty line"
@@ -178,12 +185,12 @@ def _why_not_utf8(data: bytes, at: int) -> str:
     return f":{line}: this is not UTF-8 text; save it as UTF-8"
 
 
-def key_lines(text: str) -> dict[TomlPath, int]:
+def key_lines(text: str) -> _Lines:
     """Return the line of every table header and key of a valid TOML text, by its path.
 
     Arrays count from 0.
     """
-    lines: dict[TomlPath, int] = {(): 1}
+    lines: _Lines = {(): 1}
     for line, path in _statement_paths(text):
         for length in range(len(path)):
             lines.setdefault(path[: length + 1], line)
@@ -192,7 +199,7 @@ def key_lines(text: str) -> dict[TomlPath, int]:
 
 def _statement_paths(text: str) -> Iterator[tuple[int, TomlPath]]:
     """Yield the line and the path of every table header and key."""
-    counts: dict[TomlPath, int] = {}
+    counts: _Lines = {}
     table: TomlPath = ()
     for line, tokens in _split_statements(text):
         if tokens[0] == "[":
@@ -205,7 +212,7 @@ def _statement_paths(text: str) -> Iterator[tuple[int, TomlPath]]:
             yield line, (*table, *_key_names(tokens[: tokens.index("=")]))
 
 
-def _table_path(names: list[str], counts: dict[TomlPath, int], *, is_array: bool) -> TomlPath:
+def _table_path(names: list[str], counts: _Lines, *, is_array: bool) -> TomlPath:
     """Return the path of a header's table; in an array of tables it is in the last table so far."""
     path: TomlPath = ()
     for index, name in enumerate(names):
@@ -217,7 +224,7 @@ def _table_path(names: list[str], counts: dict[TomlPath, int], *, is_array: bool
     return path
 
 
-def find_line(lines: dict[TomlPath, int], path: TomlPath) -> int:
+def find_line(lines: _Lines, path: TomlPath) -> int:
     """Return the line of a path, or of the innermost table around it that has one."""
     while path not in lines:
         path = path[:-1]
@@ -226,8 +233,9 @@ def find_line(lines: dict[TomlPath, int], path: TomlPath) -> int:
 
 def _split_statements(text: str) -> list[tuple[int, list[str]]]:
     """Return each header and key with its value as tokens, and the line on which it begins."""
-    statements: list[tuple[int, list[str]]] = []
-    line, depth = 1, 0
+    statements = []
+    line = 1
+    depth = 0
     current: list[str] = []
     for match in re.finditer(_TOKEN, text):
         token = match[0]
@@ -256,12 +264,12 @@ _NOUNS = {  # tables that are not called by their names
 }
 
 
-class KeyTable(NamedTuple):
+class KeyTable(Named):
     """A table of a TOML file: what one is called, and its keys."""
 
     name: str
     keys: Mapping[str, TomlType]
-    required: tuple[str, ...] = ()
+    required: Strings = ()
 
     @property
     def schema(self) -> dict[str, Any]:
@@ -308,7 +316,7 @@ class TomlRowReader:
 
         Complains of the others and of missing ones.
         """
-        parsed: TomlRow = {**defaults}
+        parsed = {**defaults}
         for key, value in row.items():
             if key not in table.keys:
                 hint = self.guess(key, table.keys) or f"; it has: {', '.join(table.keys)}"
@@ -359,10 +367,7 @@ def toml_literal(value: Any) -> str:
 
             text = json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
         case Mapping():
-            if value:
-                text = f"{{ {', '.join(assignment(key, item) for key, item in value.items())} }}"
-            else:
-                text = "{}"
+            text = f"{{ {', '.join(starmap(assignment, value.items()))} }}" if value else "{}"
         case list() | tuple():
             text = f"[{', '.join(map(toml_literal, value))}]"
         case int() if (

@@ -9,8 +9,9 @@ from decimal import Decimal
 from functools import lru_cache, partial
 from math import isfinite
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
+from grader.base.records import Named
 from grader.base.transforms import Vector
 
 
@@ -18,7 +19,7 @@ class WrongValue(ValueError):
     """A value of another type or outside the constraints; the text says what it must be."""
 
 
-class TomlType(NamedTuple):
+class TomlType(Named):
     """A type of values: its name for messages, its JSON Schema and its conversion.
 
     `parse` converts a TOML value or raises WrongValue.
@@ -29,7 +30,7 @@ class TomlType(NamedTuple):
     parse: Callable[[Any], Any]
 
 
-class Constraint(NamedTuple):
+class Constraint(Named):
     """A constraint for `Annotated`.
 
     `must_be` ends the message "... must be", `schema` adds to the type's schema.
@@ -105,7 +106,7 @@ _SIMPLE = {
     str: simple_type("a string", {"type": "string"}, lambda value: isinstance(value, str)),
     bool: simple_type("true or false", {"type": "boolean"}, lambda value: isinstance(value, bool)),
 }
-_PLURALS: Mapping[Any, str] = {
+_PLURALS = {
     float: "numbers",
     str: "strings",
     Scalar: "strings, numbers or booleans",
@@ -201,7 +202,7 @@ def _is_table(value: Any) -> bool:
 
 
 def _sequence_type(item: TomlType, origin: type, length: int | None, plural: str) -> TomlType:
-    schema: dict[str, Any] = {"type": "array", "items": item.schema, "minItems": length or 1}
+    schema = {"type": "array", "items": item.schema, "minItems": length or 1}
     if length is not None:
         schema["maxItems"] = length
 

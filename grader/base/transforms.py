@@ -6,7 +6,9 @@ At 4 x 4 a product of Python floats costs no more than a numpy call, and saves t
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import reduce
 from math import acos, atan2, cos, degrees, hypot, inf, nan, sin
+from operator import add
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -16,6 +18,7 @@ Vector = tuple[float, float, float]
 FULL_TURN = 6.2832  # radians
 AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 X_AXIS, Y_AXIS, Z_AXIS = AXES
+Quaternion = tuple[float, float, float, float]  # x, y, z, w
 Rotation = tuple[
     float, float, float, float, float, float, float, float, float
 ]  # a 3 x 3 matrix, row by row
@@ -44,29 +47,17 @@ class Transform:
         """Return T_a_c = T_a_b @ T_b_c."""
         if not isinstance(other, Transform):
             return NotImplemented
-        a, b, c, d, e, f, g, h, i = self.rotation
         j, k, l, m, n, o, p, q, r = other.rotation  # noqa: E741  rows, letter by letter
-        return Transform(
-            (
-                a * j + b * m + c * p,
-                a * k + b * n + c * q,
-                a * l + b * o + c * r,
-                d * j + e * m + f * p,
-                d * k + e * n + f * q,
-                d * l + e * o + f * r,
-                g * j + h * m + i * p,
-                g * k + h * n + i * q,
-                g * l + h * o + i * r,
-            ),
-            self.apply(other.translation),
-        )
+        columns = ((j, m, p), (k, n, q), (l, o, r))
+        (a, d, g), (b, e, h), (c, f, i) = map(self.rotate, columns)
+        return Transform((a, b, c, d, e, f, g, h, i), self.apply(other.translation))
 
     def apply(self, point: Iterable[float]) -> Vector:
         """Return a point given in b, as any three numbers, in frame a."""
-        a, b, c, d, e, f, g, h, i = self.rotation
         x, y, z = point if isinstance(point, tuple) else map(float, point)
+        x, y, z = self.rotate((x, y, z))
         u, v, w = self.translation
-        return (a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w)
+        return (x + u, y + v, z + w)
 
     def rotate(self, direction: Vector) -> Vector:
         """Return a direction given in b in frame a: no translation."""
@@ -87,7 +78,7 @@ class Transform:
         return Transform((a, d, g, b, e, h, c, f, i), (-x, -y, -z))
 
     @property
-    def matrix(self) -> tuple[tuple[float, float, float, float], ...]:
+    def matrix(self) -> tuple[Quaternion, ...]:
         """The 4 x 4 homogeneous matrix, row by row."""
         a, b, c, d, e, f, g, h, i = self.rotation
         x, y, z = self.translation
@@ -103,7 +94,7 @@ class Transform:
         return (atan2(h, i), atan2(-g, flat), atan2(d, a))
 
     @property
-    def quaternion(self) -> tuple[float, float, float, float]:
+    def quaternion(self) -> Quaternion:
         """The rotation as a unit quaternion x, y, z, w, as in ROS 2's messages.
 
         The number w is not negative.
@@ -152,7 +143,7 @@ def rotation_from_rpy(rpy: Vector) -> Rotation:
     )
 
 
-def rotation_from_quaternion(quaternion: tuple[float, float, float, float]) -> Rotation:
+def rotation_from_quaternion(quaternion: Quaternion) -> Rotation:
     """Return the rotation of a quaternion x, y, z, w of any length; of one without, none."""
     x, y, z, w = quaternion
     axis = unit((x, y, z))
@@ -164,7 +155,8 @@ def rotation_from_quaternion(quaternion: tuple[float, float, float, float]) -> R
 def rotation_about(axis: Vector, angle: float) -> Rotation:
     """Return the rotation by `angle` radians about a unit axis, right-handed (Rodrigues)."""
     x, y, z = axis
-    s, c = sin(angle), cos(angle)
+    s = sin(angle)
+    c = cos(angle)
     t = 1.0 - c
     return (
         t * x * x + c,
@@ -184,10 +176,7 @@ def add_up(numbers: Iterable[float]) -> float:
 
     sum() corrects rounding errors from Python 3.12 on, so that its result depends on the version.
     """
-    total = 0.0
-    for number in numbers:
-        total += number
-    return total
+    return reduce(add, numbers, 0.0)
 
 
 def weighted_mean(weighted: Iterable[tuple[float, Vector]]) -> Vector:
@@ -219,7 +208,9 @@ def unit(vector: Vector) -> Vector | None:
     largest = max(abs(vector[0]), abs(vector[1]), abs(vector[2]))
     if not 0.0 < largest < inf:
         return None
-    x, y, z = vector[0] / largest, vector[1] / largest, vector[2] / largest
+    x = vector[0] / largest
+    y = vector[1] / largest
+    z = vector[2] / largest
     norm = hypot(x, y, z)
     return (x / norm, y / norm, z / norm) if norm > 0.0 else None  # NaN is not above 0
 
@@ -244,5 +235,6 @@ def degrees_between(a: Vector, b: Vector) -> float:
 
     Returns NaN for a zero vector.
     """
-    sine, cosine = hypot(*cross(a, b)), dot(a, b)
+    sine = hypot(*cross(a, b))
+    cosine = dot(a, b)
     return degrees(atan2(sine, cosine)) if sine or cosine else nan

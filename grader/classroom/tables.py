@@ -20,18 +20,17 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.patterns import on_use
 from grader.base.text import format_points
 from grader.files.reading import capped
 
 SIZE_LIMIT = 16 * 1024 * 1024  # bytes
 _CELL_LIMIT = 1_000_000
 _DELIMITERS = ",;\t"
-_AS_TEXT = re.compile(
-    r'\A="(.*)"\Z', re.DOTALL
-)  # keeps a spreadsheet from reading a text as a number
+_AS_TEXT = on_use(r'\A="(.*)"\Z', re.DOTALL)  # keeps a spreadsheet from reading a text as a number
 # Possessive, so that an open quote fails in one pass. After a closing quote csv continues with
 # plain text.
-_QUOTED = re.compile(r'"(?:[^"]++|"")*+"')
+_QUOTED = on_use(r'"(?:[^"]++|"")*+"')
 _SPREADSHEETS = (
     b"PK\x03\x04",
     b"\xd0\xcf\x11\xe0",
@@ -43,14 +42,14 @@ _BOMS = (
 )
 # the last four are the small forms
 _TRIGGERS = "=+\\-@\uff1d\uff0b\uff0d\uff20\ufe66\ufe62\ufe63\ufe6b"
-_FORMULA = re.compile(rf"(\A\s*+|;\s*+|(?<!\s)[^\S\t\r\n]*+[\t\r\n]\s*+)('*+[{_TRIGGERS}])")
-_PROTECTED = re.compile(rf"(\A\s*+|;\s*+|(?<!\s)[^\S\t\r\n]*+[\t\r\n]\s*+)'('*+[{_TRIGGERS}])")
+_FORMULA = on_use(rf"(\A\s*+|;\s*+|(?<!\s)[^\S\t\r\n]*+[\t\r\n]\s*+)('*+[{_TRIGGERS}])")
+_PROTECTED = on_use(rf"(\A\s*+|;\s*+|(?<!\s)[^\S\t\r\n]*+[\t\r\n]\s*+)'('*+[{_TRIGGERS}])")
 # Control characters but tab and line ends, C1 controls, bidirectional embeddings and isolates,
 # surrogates, and the noncharacters of Unicode, which HTML has no reference for.
 _NONCHARACTERS = "".join(
     chr(plane << 16 | last) for plane in range(17) for last in (0xFFFE, 0xFFFF)
 )
-_ESCAPED = re.compile(
+_ESCAPED = on_use(
     "[\\0-\\x08\\v\\f\\x0e-\\x1f\\x7f-\\x9f\\u202a-\\u202e\\u2066-\\u2069\\ud800-\\udfff\\ufdd0-\\ufdef"
     f"{_NONCHARACTERS}]"
 )
@@ -62,7 +61,7 @@ class TableRow(NamedTuple):
 
     number: int  # from 1
     line: int  # where it begins
-    cells: tuple[str, ...]  # as in the file; a blank line has none
+    cells: Sequence[str]  # as in the file; a blank line has none
     end: str  # the line break after it
 
     @property
@@ -83,13 +82,13 @@ class TableRow(NamedTuple):
 class Table(NamedTuple):
     """A CSV file: its rows, and what is needed to write them back unchanged."""
 
-    rows: tuple[TableRow, ...]
+    rows: Sequence[TableRow]
     delimiter: str
     encoding: str
     bom: bytes
 
     @property
-    def titles(self) -> tuple[str, ...]:
+    def titles(self) -> Sequence[str]:
         """The cells of the first row, without surrounding spaces."""
         if self.rows:
             return tuple(value.strip() for value in self.rows[0].values)
@@ -178,21 +177,23 @@ def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
 
 def _unquoted(cell: str) -> str:
     match = _QUOTED.match(cell)
-    if match is None:
+    if not match:
         return cell
     return match[0][1:-1].replace('""', '"') + cell[match.end() :]
 
 
-def _split_rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
+def _split_rows(text: str, delimiter: str, shown: str) -> Sequence[TableRow]:
     pattern = re.compile(
         rf'((?:{_QUOTED.pattern}|(?!"))[^{delimiter}\r\n]*+)({delimiter}|\r\n|\r|\n|\Z)'
     )
-    at, line, count = 0, 1, 0
+    at = 0
+    line = 1
+    count = 0
     rows: list[TableRow] = []
     cells: list[str] = []
     while at < len(text) or cells:  # a text that ends after a delimiter has one more empty cell
         match = pattern.match(text, at)
-        if match is None:
+        if not match:
             raise InputError(
                 f"{shown} is not a CSV file: a quotation mark in row {len(rows) + 1} is "
                 "never closed"

@@ -8,6 +8,7 @@ import bz2
 import gzip
 import io
 import lzma
+import shutil
 import stat
 import struct
 import tarfile
@@ -24,9 +25,11 @@ from typing import IO, Any, Literal, NamedTuple
 from grader.base.errors import FileError, InputError, MachineError
 from grader.base.text import printable_path
 from grader.files import limits
-from grader.files.limits import ignored_part, is_generated, is_setting
+from grader.files.limits import ignored_part, is_generated, is_recording, is_setting
 from grader.files.reading import advice_for, capped
 from grader.files.tree import IS_LINK, File, IgnoredFile, Tree, keep_small, make_tree, parents
+
+_File = IO[bytes]
 
 _MAX_NAME_LENGTH = 4096  # characters
 NOT_REGULAR = "is not a regular file, and was not read"
@@ -60,7 +63,7 @@ _DECOMPRESSORS: dict[str, Any] = {"gz": gzip.open, "bz2": bz2.open, "xz": lzma.o
 
 
 def read_archive(
-    file: IO[bytes], kind: str, name: str, allowance: limits.Allowance | None = None
+    file: _File, kind: str, name: str, allowance: limits.Allowance | None = None
 ) -> Tree:
     """Return the files in an archive.
 
@@ -97,7 +100,7 @@ def read_archive(
 
 
 def _decompress(
-    source: IO[bytes], to: IO[bytes], name: str, limit: int, allowance: limits.Allowance
+    source: _File, to: _File, name: str, limit: int, allowance: limits.Allowance
 ) -> None:
     """Decompress a tar up to a limit."""
     total = 0
@@ -178,7 +181,8 @@ def build_tree(
     for member in _check_limits(members, name, min(limit, limits.MAX_UNPACKED_SIZE)):
         entries.add(member)
     entries.remove_environments()
-    kept, ignored = entries.kept, entries.ignored
+    kept = entries.kept
+    ignored = entries.ignored
     files = [_make_file(kept[path], path) for path in entries.list_paths("file")]
     ignored += [IgnoredFile(path, member.reason) for path, member in kept.items() if member.reason]
     links = entries.list_paths("link")
@@ -195,7 +199,10 @@ def build_tree(
 
 
 def _make_file(member: ArchiveMember, path: str) -> File:
-    return File(path, member.size, keep_small(partial(_read_member, member, path)))
+    opened = None
+    if is_recording(path) and member.size <= limits.MAX_UNPACKED_SIZE:
+        opened = partial(_unpack_member, member, path)
+    return File(path, member.size, keep_small(partial(_read_member, member, path)), opened)
 
 
 def _path_in_tree(member: ArchiveMember) -> str | IgnoredFile:
@@ -215,7 +222,7 @@ def _check_limits(members: Iterable[ArchiveMember], name: str, limit: int) -> li
 
     Raises InputError for too many, or too much in those that are not ignored for their size.
     """
-    listed: list[ArchiveMember] = []
+    listed = []
     total = 0
     for member in members:
         listed.append(member)
@@ -236,9 +243,22 @@ def _read_member(member: ArchiveMember, path: str, limit: int, *, first: bool = 
     return capped(data, limit, path, advice_for(path))
 
 
-def zip_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
+def _unpack_member(member: ArchiveMember, path: str) -> _File:
+    """Return a member as a temporary file, which is gone when it is closed."""
+    stored = tempfile.TemporaryFile()  # noqa: SIM115  its reader closes it
+    try:
+        with member.open() as file:
+            shutil.copyfileobj(file, stored, _CHUNK)
+    except ARCHIVE_ERRORS as error:
+        stored.close()
+        raise InputError(f"cannot read {path}: {error_text(error, path)}") from None
+    stored.seek(0)
+    return stored
+
+
+def zip_members(file: _File) -> Iterator[ArchiveMember]:
     """Yield the members of a zip, which stays open for them."""
-    bounded: Any = _BoundedReader(file)
+    bounded = _BoundedReader(file)
     archive = zipfile.ZipFile(bounded)
     archive.fp = file  # the bound is for the table of contents only
     for info in archive.infolist():
@@ -246,7 +266,8 @@ def zip_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
 
 
 def _zip_member(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> ArchiveMember:
-    name, mode = _zip_name(info), info.external_attr >> 16
+    name = _zip_name(info)
+    mode = info.external_attr >> 16
     opened = partial(archive.open, info)
     if name.endswith(("/", "\\")):
         return ArchiveMember(name, "folder", 0, opened)
@@ -275,8 +296,10 @@ def _zip_name(info: zipfile.ZipInfo) -> str:
 class _BoundedReader:
     """A file that refuses to be read in pieces larger than a table of contents may be."""
 
-    def __init__(self, file: IO[bytes]) -> None:
-        self._read, self.seek, self.tell = file.read, file.seek, file.tell
+    def __init__(self, file: _File) -> None:
+        self._read = file.read
+        self.seek = file.seek
+        self.tell = file.tell
 
     def read(self, size: int = -1) -> bytes:
         """Return the next bytes."""
@@ -285,7 +308,7 @@ class _BoundedReader:
         return self._read(size)
 
 
-def _tar_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
+def _tar_members(file: _File) -> Iterator[ArchiveMember]:
     """Yield the members of a tar, which stays open for them."""
     archive = tarfile.open(fileobj=file, mode="r:")  # noqa: SIM115  it is read from as long as its tree lives
     offset = -1
@@ -303,7 +326,7 @@ def _tar_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
             yield ArchiveMember(info.name, "other" if reason else "folder", 0, opened, reason)
 
 
-def _open_tar_member(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
+def _open_tar_member(archive: tarfile.TarFile, info: tarfile.TarInfo) -> _File:
     return archive.extractfile(info) or io.BytesIO()
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import FileError, InputError, MachineError
+from grader.base.names import last_part
 from grader.base.text import printable_path
 from grader.files import limits
 from grader.files.archive import (
@@ -78,7 +79,8 @@ class ClassDirectory:
     """
 
     def __init__(self, root: Path) -> None:
-        self._root, self._top = root, os.fspath(root)
+        self._root = root
+        self._top = os.fspath(root)
 
     def children(self, folder: str, limit: int | None = None) -> Children:
         """Return the names in a folder, at most `limit`.
@@ -128,7 +130,7 @@ class ClassDirectory:
 
     def read(self, path: str, limit: int) -> bytes:
         """Return the bytes of one file of at most `limit` bytes."""
-        shown = printable_path(path.rpartition("/")[2])
+        shown = printable_path(last_part(path))
         return read_capped(Path(self._root, path), limit, shown=shown, top=str(self._root))
 
     def raw(self, path: str) -> IO[bytes]:
@@ -142,7 +144,7 @@ class ClassDirectory:
         """
         tree = outer_tree(Path(self._root, path), str(self._root))
         try:
-            with self.raw(path) if tree is not None else BytesIO() as file:
+            with self.raw(path) if tree else BytesIO() as file:
                 while chunk := file.read(_CHUNK):
                     digest.update(chunk)
         except OSError as error:
@@ -175,8 +177,8 @@ class ClassZip:
 
     def __init__(self, path: Path) -> None:
         self._shown = printable_path(path)
-        self.members: dict[str, ArchiveMember] = {}
-        self.outside: list[str] = []
+        self.members = {}
+        self.outside = []
         try:
             file = path.open("rb")
             weakref.finalize(self, file.close)
@@ -213,7 +215,7 @@ class ClassZip:
     def _folders(self) -> dict[str, dict[str, str]]:
         """The kinds of the children of each folder, by their names."""
         outside = "has a path that leads out of the archive, and was not read"
-        folders: dict[str, dict[str, str]] = {"": dict.fromkeys(self.outside, outside)}
+        folders = {"": dict.fromkeys(self.outside, outside)}
         for path, member in self.members.items():
             _add_member(path.split("/"), member.kind, folders)
             if len(folders) > _MAX_FOLDERS:
@@ -230,7 +232,7 @@ class ClassZip:
             bisect_left(self._names, f"{path}0"),
         )  # 0 comes after /
         below = {name.removeprefix(start): self.members[name] for name in self._names[first:end]}
-        return self._tree(below, path.rpartition("/")[2])
+        return self._tree(below, last_part(path))
 
     def files(self, named: dict[str, str], name: str) -> Tree:
         """Return some files as one tree, each under its given name."""
@@ -239,11 +241,11 @@ class ClassZip:
     def is_folder(self, path: str) -> bool:
         """Return whether a path is that of a folder, or missing."""
         member = self.members.get(path)
-        return member is None or member.kind == "folder"
+        return not member or member.kind == "folder"
 
     def read(self, path: str, limit: int) -> bytes:
         """Return the bytes of one file of at most `limit` bytes."""
-        tree = self.files({path: path.rpartition("/")[2]}, path)
+        tree = self.files({path: last_part(path)}, path)
         for file in tree.files.values():
             return file.read(limit)
         raise InputError(str(tree.ignored[0]) if tree.ignored else f"{path} cannot be read")
@@ -257,7 +259,8 @@ class ClassZip:
 
         Returns None for a file of another kind.
         """
-        member, name = self._member(path), path.rpartition("/")[2]
+        member = self._member(path)
+        name = last_part(path)
         if member.kind != "file":
             raise FileError(name, member.reason or NOT_REGULAR)
         if member.size > limits.MAX_ARCHIVE_SIZE:
@@ -279,7 +282,7 @@ class ClassZip:
 
     def _member(self, path: str) -> ArchiveMember:
         member = self.members.get(path)
-        if member is None:
+        if not member:
             raise FileError(path, f"is not in {self._shown}")
         return member
 

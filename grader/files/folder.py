@@ -8,6 +8,7 @@ from functools import partial
 from itertools import islice
 from operator import attrgetter
 from pathlib import Path
+from typing import IO
 
 from grader.base.errors import FileError, MachineError
 from grader.base.text import printable_path
@@ -20,7 +21,14 @@ from grader.files.limits import (
     is_setting,
     may_have_settings,
 )
-from grader.files.reading import advice_for, read_capped, read_error, read_start, shown_below
+from grader.files.reading import (
+    advice_for,
+    open_regular,
+    read_capped,
+    read_error,
+    read_start,
+    shown_below,
+)
 from grader.files.tree import IS_LINK, File, IgnoredFile, Tree, keep_small, make_tree
 
 _MAX_GENERATED = 10_000  # files of builds that are looked through for those of packages
@@ -109,6 +117,7 @@ class _Walk:
                     shown,
                     _size(entry, shown),
                     keep_small(partial(_read_file, place, shown, self._trusted)),
+                    partial(_open_file, place, shown, self._trusted),
                 )
             )
         else:
@@ -155,7 +164,10 @@ def file_at(path: Path, name: str, top: str) -> File:
         raise read_error(error, name) from None
     if stat.S_ISLNK(status.st_mode):
         raise FileError(name, IS_LINK)
-    return File(name, status.st_size, partial(_read_file, os.fspath(path), name, top))
+    place = os.fspath(path)
+    read = partial(_read_file, place, name, top)
+    opened = partial(_open_file, place, name, top)
+    return File(name, status.st_size, read, opened)
 
 
 def _generated_files(folder: Path, path: str) -> list[str]:
@@ -163,7 +175,7 @@ def _generated_files(folder: Path, path: str) -> list[str]:
 
     They are named in the report, never read.
     """
-    generated: list[str] = []
+    generated = []
     seen = 0
     with suppress(RecursionError):  # os.walk raises it for folders nested a thousand deep
         for where, folders, names in os.walk(folder / path):
@@ -181,7 +193,7 @@ def _find_settings(top: str) -> list[File]:
 
     No symlink is followed.
     """
-    settings: list[File] = []
+    settings = []
     waiting = [""]
     seen = 0
     while waiting:
@@ -199,6 +211,10 @@ def _find_settings(top: str) -> list[File]:
         if seen > limits.MAX_FILES:
             break
     return settings
+
+
+def _open_file(path: str, shown: str, top: str) -> IO[bytes]:
+    return os.fdopen(open_regular(path, shown, top), "rb")
 
 
 def _read_file(path: str, shown: str, top: str, limit: int, *, first: bool = False) -> bytes:

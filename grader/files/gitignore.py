@@ -9,19 +9,21 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fnmatch import translate
 from pathlib import Path
-from typing import NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.files.reading import read_capped
 from grader.files.tree import Tree
 
 _NAME = ".gitignore"
 _MAX_SIZE = 64 * 1024  # bytes of such a file; a larger one is not read
 _ANY = "**"  # any number of folders
-_ESCAPED = re.compile(r"\\(.)")
+_ESCAPED = on_use(r"\\(.)")
 
 
-class _IgnoreRule(NamedTuple):
+class _IgnoreRule(Named):
     """A line of a .gitignore: a pattern for each folder on the way, and for the name."""
 
     depth: int  # of the folder of the .gitignore
@@ -39,14 +41,15 @@ class _IgnoreRule(NamedTuple):
 
     def _matches_folders(self, path: Sequence[str]) -> bool:
         at = part = 0
-        again: tuple[int, int] | None = None  # after the last `**`: its part, and where it is tried
+        again = None  # after the last `**`: its part, and where it is tried
         while at < len(path):
             pattern = self.parts[part] if part < len(self.parts) else re.compile("(?!)")
             if pattern is None:
                 again = part + 1, at
                 part += 1
             elif pattern.match(path[at]):
-                part, at = part + 1, at + 1
+                part = part + 1
+                at = at + 1
             elif again is not None:
                 again = again[0], again[1] + 1
                 part, at = again
@@ -62,7 +65,7 @@ def without_git_ignored(tree: Tree, folder: Path) -> Tree:
     """
     start, above = _rules_above(folder)
     rules = {"": (*above, *_read_rules(folder, len(start)))}
-    ignored = set[str]()
+    ignored = set()
     for path in sorted({*tree.folders, *tree.files}):
         outer = path.rpartition("/")[0]
         if outer not in rules:  # it is in an ignored folder
@@ -92,7 +95,7 @@ def _is_ignored(path: Sequence[str], rules: Sequence[_IgnoreRule], *, is_folder:
     return False
 
 
-def _rules_above(folder: Path) -> tuple[tuple[str, ...], tuple[_IgnoreRule, ...]]:
+def _rules_above(folder: Path) -> tuple[Strings, tuple[_IgnoreRule, ...]]:
     """Return the folders from the root of the repository down to a folder, and the rules there.
 
     Returns none where git ignores the folder itself.
@@ -118,7 +121,7 @@ def _read_rules(folder: Path, depth: int) -> Iterator[_IgnoreRule]:
         return
     for line in text.removeprefix("\ufeff").split("\n"):
         rule = _rule(line.removesuffix("\r"), depth)
-        if rule is not None:
+        if rule:
             yield rule
 
 

@@ -3,9 +3,8 @@
 Robots, packages and archives are known by their names.
 """
 
-import re
-
 from grader.base.errors import FileError, InputError
+from grader.base.patterns import on_use
 from grader.base.text import size_text
 
 ROBOT_ENDINGS = (".urdf", ".xacro")
@@ -37,14 +36,28 @@ MAX_NESTED = 3  # archives inside each other
 MAX_RATIO = 200  # of the content of an archive to its own size
 SETUP_ASSISTANT = ".setup_assistant"  # where a MoveIt configuration says which robot it is for
 # Hidden files that say how a folder, or the only one in it, is built: workflows and containers.
-_SETTING = re.compile(
+_SETTING = on_use(
     r"(?:[^/]+/)?(?:\.gitlab-ci\.yml|\.env|\.gitmodules|\.github/workflows/[^/]+\.ya?ml"
     r"|\.(?:devcontainer|docker)/(?:[^/]+/)?[^/]+)"
 )
-_OF_SETTINGS = re.compile(
+_OF_SETTINGS = on_use(
     r"(?:[^./][^/]*/)?\.(?:github(?:/workflows)?|(?:devcontainer|docker)(?:/[^/]+)?)|[^./][^/]*"
 )
 HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may contain regardless of the ratio
+# Recordings of `ros2 bag record`, which are read as streams.
+METADATA = "metadata.yaml"  # beside them
+_RECORDINGS = (".mcap", ".db3", ".mcap.zstd", ".db3.zstd")  # endings of their files
+MAX_RECORDING_SIZE = 1024 * 1024 * 1024  # bytes of a file; in an archive, MAX_UNPACKED_SIZE
+MAX_RECORDING_UNPACKED = 256 * 1024 * 1024  # bytes of its decompressed chunks, messages and files
+MAX_CHUNK_SIZE = 64 * 1024 * 1024  # bytes, compressed or not
+MAX_MESSAGE_SIZE = 1024 * 1024  # bytes of a message that is decoded
+MAX_TOPIC_SIZE = 16 * 1024 * 1024  # bytes of the messages of a topic that are kept
+MAX_KEPT_SIZE = 64 * 1024 * 1024  # bytes of all messages that are kept
+MAX_MESSAGES = 1_000_000
+MAX_TOPICS = 1_000
+MAX_METADATA_SIZE = 512 * 1024  # bytes of a metadata.yaml
+MAX_QUERY_STEPS = 200_000  # thousands of instructions of SQLite
+MAX_MESSAGE_VALUES = 200_000  # that are decoded of a message
 
 
 def ignored_part(path: str) -> str | None:
@@ -63,6 +76,11 @@ def ignored_part(path: str) -> str | None:
 def is_generated(path: str) -> bool:
     """Return whether a path is that of a file of a package which a build has copied."""
     return path.lower().endswith(_COPIED) and not BUILD_FOLDERS.isdisjoint(path.split("/")[:-1])
+
+
+def is_recording(path: str) -> bool:
+    """Return whether a path is that of a file of a recording, which may be larger than others."""
+    return path.lower().endswith(_RECORDINGS)
 
 
 def is_setting(path: str) -> bool:

@@ -26,7 +26,7 @@ def read_log(path: str, limit: int) -> bytes:
     files = _log_files(place)
     if not files:
         raise InputError(f"{printable_path(path)} has no log file (*.log)")
-    parts = list[bytes]()
+    parts = []
     for file in files:
         with suppress(InputError):  # a file that cannot be read hides no other one
             parts.append(_last_bytes(file, limit))
@@ -35,7 +35,7 @@ def read_log(path: str, limit: int) -> bytes:
 
 def _log_files(folder: Path) -> list[Path]:
     """Return the log files of a folder: launch.log last, of a build what went to standard error."""
-    files = list[Path]()
+    files = []
     for top, folders, names in os.walk(folder):
         folders.sort()
         files += [Path(top, name) for name in sorted(names) if name.endswith(_ENDINGS)]

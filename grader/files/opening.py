@@ -10,7 +10,7 @@ from grader.base.text import printable_path
 from grader.files import limits
 from grader.files.limits import ARCHIVES, PACKAGE_FILES, ROBOT_ENDINGS
 from grader.files.reading import not_there, open_regular, read_error, read_start, shown_below
-from grader.files.tree import File, IgnoredFile, Tree, make_tree
+from grader.files.tree import File, IgnoredFile, Tree, make_tree, parents
 
 NOT_AN_ARCHIVE = "is not a readable archive: it is damaged or empty"
 _SIGNATURES = {
@@ -43,7 +43,7 @@ def open_tree(path: Path, is_opened: Callable[[str], bool] = lambda _: False) ->
     `is_opened` is that of `with_inner`.
     """
     tree = outer_tree(path)
-    return with_inner(tree, is_opened) if tree is not None else None
+    return with_inner(tree, is_opened) if tree else None
 
 
 def outer_tree(path: Path, top: str = "") -> Tree | None:
@@ -122,7 +122,16 @@ def with_inner(
 def _archives_to_open(tree: Tree, is_opened: Callable[[str], bool]) -> list[File]:
     """Return the archives that are opened."""
     files = tree.files.values()
-    archives = [file for file in files if file.suffix in ARCHIVES]
+    # What is in an archive of a package is not installed.
+    packages = {
+        file.path.removesuffix("package.xml") for file in files if file.name == "package.xml"
+    }
+    archives = [
+        file
+        for file in files
+        if file.suffix in ARCHIVES
+        and (is_opened(file.name) or packages.isdisjoint(f"{path}/" for path in parents(file.path)))
+    ]
     has_package = any(file.name in PACKAGE_FILES for file in files)
     if has_package and any(file.suffix == ".urdf" for file in files):
         return [file for file in archives if is_opened(file.name)]
@@ -133,8 +142,11 @@ def _combined_tree(
     name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[IgnoredFile]
 ) -> Tree:
     """Return one tree of several, each with the start of its paths."""
-    files, ignored = list[File](), list[IgnoredFile]()
-    folders, generated, unseen = list[str](), list[str](), list[str]()
+    files = []
+    ignored = []
+    folders = []
+    generated = []
+    unseen = []
     for start, part in parts:
         files += [file._replace(path=start + file.path) for file in part.files.values()]
         ignored += [file._replace(path=start + file.path) for file in part.ignored]

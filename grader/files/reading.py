@@ -191,7 +191,7 @@ def not_there(path: Path) -> NotThereError:
     wrong = path
     while wrong.name and not os.path.lexists(wrong.parent):
         wrong = wrong.parent
-    siblings: list[str] = []
+    siblings = []
     with suppress(OSError, ValueError):
         siblings = [
             printable_path(sibling.name)

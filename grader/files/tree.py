@@ -1,11 +1,13 @@
 """The file tree of a submission: a folder or an archive looks the same from here on."""
 
+import io
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple, Protocol
+from typing import IO, Protocol
 
 from grader.base.errors import FileError, InputError
+from grader.base.grouping import Strings, distinct
+from grader.base.records import Named, Record
 from grader.base.text import quoted_end, size_text
 from grader.files import limits
 from grader.files.limits import ignored_part
@@ -42,7 +44,7 @@ def keep_small(read: _ContentReader) -> _ContentReader:
     return content
 
 
-class IgnoredFile(NamedTuple):
+class IgnoredFile(Named):
     """A file or folder that is not read, and why: `is encrypted`.
 
     With `is_closed`, it may contain what has to be graded.
@@ -56,7 +58,7 @@ class IgnoredFile(NamedTuple):
         return f"{quoted_end(self.path)} {self.reason}"
 
 
-class File(NamedTuple):
+class File(Named):
     """One regular file.
 
     `path` is relative to the submission, with forward slashes, and printable.
@@ -65,6 +67,13 @@ class File(NamedTuple):
     path: str
     size: int
     read: _ContentReader
+    open: Callable[[], IO[bytes]] | None = None  # for files that may be larger than others
+
+    def stream(self) -> IO[bytes]:
+        """Return the file opened for reading; raises InputError."""
+        if self.open is not None:
+            return self.open()
+        return io.BytesIO(self.read(limits.MAX_FILE_SIZE))
 
     @property
     def name(self) -> str:
@@ -81,17 +90,14 @@ class File(NamedTuple):
         return ""
 
 
-@dataclass(
-    frozen=True, eq=False, repr=False
-)  # no slots: finalizers of archives need weak references to it
-class Tree:
+class Tree(Record):
     """The files of a submission, and its folders."""
 
     name: str
     files: Mapping[str, File]  # by path, in alphabetical order
     folders: frozenset[str]  # empty ones included
     ignored: tuple[IgnoredFile, ...] = ()
-    generated: tuple[str, ...] = ()  # the paths of files of packages that a build has copied
+    generated: Strings = ()  # the paths of files of packages that a build has copied
     unseen: frozenset[str] = frozenset()  # folders and links that were not looked into
     kept: tuple[object, ...] = ()  # the archives that have to stay open
     settings: Callable[[], Iterable[File]] = tuple  # hidden files that say how packages are built
@@ -147,8 +153,9 @@ class Tree:
             return {path.removeprefix(start): path for path in paths if path.startswith(start)}
 
         contained = {inner: self.files[path] for inner, path in inside(self.files).items()}
-        files = {inner: File(inner, file.size, file.read) for inner, file in contained.items()}
-        folders, unseen = frozenset(inside(self.folders)), frozenset(inside(self.unseen))
+        files = {inner: file._replace(path=inner) for inner, file in contained.items()}
+        folders = frozenset(inside(self.folders))
+        unseen = frozenset(inside(self.unseen))
         return Tree(folder.rpartition("/")[2], files, folders, unseen=unseen, kept=(self,))
 
 
@@ -173,9 +180,10 @@ def make_tree(
     by_path |= {
         file.path: by_path[file.path]._replace(read=partial(_refuse, file)) for file in large
     }
+    large = [file for file in large if not _is_streamed(by_path[file.path])]
     named = frozenset(folders)
     everything = named | _folders_above([*by_path, *named], name)
-    ignored = tuple(dict.fromkeys([*ignored, *large]))
+    ignored = distinct([*ignored, *large])
     return Tree(
         name,
         by_path,
@@ -189,10 +197,18 @@ def make_tree(
 
 
 def _too_large(file: File) -> IgnoredFile:
-    limit = f"{limits.MAX_FILE_SIZE >> 20} MiB, the limit for one file"
+    limit = f"{size_text(limits.MAX_FILE_SIZE)}, the limit for one file"
+    if limits.is_recording(file.path):
+        size = limits.MAX_RECORDING_SIZE if file.open else limits.MAX_UNPACKED_SIZE
+        limit = f"{size_text(size)}, the limit for a recording"
     return IgnoredFile(
         file.path, f"({file.size / 1e6:.0f} MB) is larger than {limit}, and was ignored"
     )
+
+
+def _is_streamed(file: File) -> bool:
+    is_small = file.size <= limits.MAX_RECORDING_SIZE
+    return file.open is not None and limits.is_recording(file.path) and is_small
 
 
 def _refuse(file: IgnoredFile, limit: int, *, first: bool = False) -> bytes:
@@ -202,7 +218,7 @@ def _refuse(file: IgnoredFile, limit: int, *, first: bool = False) -> bytes:
 
 def _folders_above(paths: Iterable[str], name: str) -> set[str]:
     """Return every folder that one of these paths is in; raises InputError for too many."""
-    above: set[str] = set()
+    above = set()
     for path in paths:
         for parent in parents(path):
             if parent in above:  # and with it those above it
@@ -224,7 +240,7 @@ def overlaid(tree: Tree, files: Mapping[str, bytes | None]) -> Tree:
     kept = [file for path, file in tree.files.items() if path not in files]
     new = [_make_file(path, data) for path, data in files.items() if data is not None]
     return make_tree(
-        tree.name, (*kept, *new), tree.folders, tree.ignored, tree.generated, tree.unseen, (tree,)
+        tree.name, kept + new, tree.folders, tree.ignored, tree.generated, tree.unseen, (tree,)
     )
 
 

@@ -2,16 +2,16 @@
 
 from collections.abc import Iterable, Iterator
 from itertools import groupby
-from typing import NamedTuple
 
 from grader.base.problems import Problem, Severity
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import printable
 
 SEVERITIES: tuple[Severity, ...] = ("error", "warning", "note")
 
 
-class Cause(NamedTuple):
+class Cause(Named):
     """Problems of one severity that one mistake makes: an equal message, or one cause.
 
     The first one stands for all.
@@ -37,7 +37,7 @@ class Cause(NamedTuple):
         return len({problem.message for problem in self.problems}) == 1
 
 
-class CauseKind(NamedTuple):
+class CauseKind(Named):
     """The causes of one code, which is of warnings or of notes."""
 
     causes: tuple[Cause, ...]

@@ -9,9 +9,9 @@ printable text.
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from itertools import groupby
-from typing import NamedTuple
 
 from grader.base.problems import Problem
+from grader.base.records import Named
 from grader.base.text import (
     counted,
     counted_points,
@@ -24,7 +24,7 @@ from grader.base.text import (
 )
 from grader.lab.checks.loading import urdf_loads
 from grader.lab.checks.manual import answered, picture_name, picture_named
-from grader.lab.grading.report import EvidenceResult, Report, Result
+from grader.lab.grading.report import EvidenceResult, Report, Result, sum_points
 from grader.lab.rubric.criterion import worth
 from grader.report.criteria import (
     Answer,
@@ -46,13 +46,13 @@ from grader.report.criteria import (
     write_points,
 )
 from grader.report.readings import UNDECIDED, VERDICTS, problem_line
-from grader.ros.api import RECOVERED
+from grader.ros.api import RECOVERED, Absent
 
 _REMARKS = ("Marked manually", "Corrected after grading", "Comments")
 _MAX_LISTED = 12
 
 
-class ReportSections(NamedTuple):
+class ReportSections(Named):
     """A report in the order in which a student needs it.
 
     Criteria that passed and have no remark are not among them.
@@ -96,9 +96,10 @@ class ReportSections(NamedTuple):
         """What to add, a line for each thing that is not there."""
         listed = set[str]()
         for entry in self.unbuilt:
-            outcome, hint = entry.result.outcome, entry.result.hint
+            outcome = entry.result.outcome
+            hint = entry.result.hint
             if not listed.issuperset(outcome.absent):
-                if hint is not None:
+                if hint:
                     what = hint_text(entry, hint)
                 else:
                     what = sentence(outcome.mistake or outcome.message)
@@ -135,7 +136,8 @@ def _split(
     some: Iterable[Entry], belongs: Callable[[Result], bool]
 ) -> tuple[list[Entry], list[Entry]]:
     """Return the entries whose results do not have a property, and those whose do."""
-    without, having = list[Entry](), list[Entry]()
+    without = list[Entry]()
+    having = list[Entry]()
     for entry in some:
         (having if belongs(entry.result) else without).append(entry)
     return without, having
@@ -187,7 +189,7 @@ def _building_order(entry: Entry) -> tuple[int, bool, int]:
     """
     return (
         len(entry.result.outcome.absent),
-        entry.result.hint is None,
+        not entry.result.hint,
         entry.result.criterion.position,
     )
 
@@ -222,7 +224,8 @@ def hand_in_line(report: Report) -> str:
     """Return how many answers and pictures were searched in vain; empty if there are all."""
     missing = [result for result in report.results if is_not_found(result)]
     answers = sum(result.criterion.check.function is answered for result in missing)
-    pictures, without = len(missing) - answers, len(_pictures_to_add(report, missing))
+    pictures = len(missing) - answers
+    without = len(_pictures_to_add(report, missing))
     counts = [counted(answers, "answer")] if answers else []
     counts += [f"{counted(pictures, 'picture')} with points"] if pictures else []
     if without and pictures:
@@ -237,7 +240,7 @@ def found_line(pending: Sequence[Entry]) -> str:
     results = [result for entry in pending for result in entry.results]
     if not results or not all(is_manual(one) and one.outcome.problem == "" for one in results):
         return ""
-    names = enumerated([printable(result.criterion.id) for result in results])
+    names = enumerated([printable(result.id) for result in results])
     return f"Needs manual grading ({write_points(results)}): {names}"
 
 
@@ -249,7 +252,7 @@ def _unmatched(report: Report) -> list[str]:
         if result.is_open and result.outcome.location
     }
     documents = report.submission.readable_documents
-    read = documents.read if documents is not None else ()
+    read = documents.read if documents else ()
     return [
         path
         for path in dict.fromkeys((*read, *(file.path for file in report.other_pictures)))
@@ -260,7 +263,7 @@ def _unmatched(report: Report) -> list[str]:
 def entries(report: Report, *, everything: bool = False) -> Mapping[str, Entry]:
     """Return the entry of every criterion by its id, in the rubric's order."""
     failed = {failure.id: failure for failure in failures(report)}
-    entries_in_order = (failed.get(result.criterion.id, Entry(result)) for result in report.results)
+    entries_in_order = (failed.get(result.id, Entry(result)) for result in report.results)
     filled = {
         one.id: one._replace(blocks=tuple(make_blocks(one, report, everything=everything)))
         for one in entries_in_order
@@ -286,7 +289,7 @@ def failures(report: Report) -> tuple[Entry, ...]:
         )
     )
     mistakes_found = [
-        Entry(one, skipped.get(one.criterion.id, ())) for one in report.results if is_failure(one)
+        Entry(one, skipped.get(one.id, ())) for one in report.results if is_failure(one)
     ]
     mistakes = [_fixed_together(some) for _, some in alike(mistakes_found, _shared_edit)]
     is_rejected = report.submission.verdict == "rejected"
@@ -306,10 +309,11 @@ def _shared_edit(failure: Entry) -> str:
 
     Without a hint, it is what is said of them. A mark stands alone.
     """
-    result, outcome = failure.result, failure.result.outcome
-    if result.why_given or result.manual_mark is not None:
+    result = failure.result
+    outcome = failure.result.outcome
+    if result.why_given or result.manual_mark:
         return f"only {failure.id}"
-    if result.hint is not None:
+    if result.hint:
         return result.hint.shown_by
     return f"{outcome.mistake or outcome.message} {outcome.location}"
 
@@ -344,10 +348,8 @@ def _reason_to_join(entry: Entry) -> str:
 
     Of others, and of those with an answer or a comment, return the id.
     """
-    outcome, has_own = (
-        entry.result.outcome,
-        any(isinstance(block, Answer) for block in entry.blocks),
-    )
+    outcome = entry.result.outcome
+    has_own = any(isinstance(block, Answer) for block in entry.blocks)
     is_ungraded = entry.status in ("pending", "errored") and not (has_own or entry.result.comment)
     if is_ungraded:
         return outcome.mistake or outcome.message
@@ -361,9 +363,12 @@ def result_line(report: Report, sections: ReportSections) -> str:
 
     Of a student in a class it is the grade, and how it came about.
     """
-    if report.grade is not None:
+    if report.grade:
         return _result_with_grade(report)
-    decided = report.max_score - report.pending
+    open_maximum = sum_points(
+        result.criterion.maximum for result in report.results if result.is_open
+    )
+    decided = report.max_score - open_maximum
     if decided == 0 and not sections.mistakes:
         return sentence(_pending_points(report)) if report.pending else "Nothing to grade."
     points = f"{format_points(report.score)} of {counted_points(decided)}"
@@ -395,7 +400,9 @@ def _reasons_of_loss(sections: ReportSections) -> list[str]:
     faulty = [entry for entry in sections.mistakes if entry.status == "errored"]
     mistakes = [entry for entry in sections.mistakes if entry.status != "errored"]
     reasons = []
-    if mistakes:
+    if mistakes and all(entry.result.criterion.bonus and not entry.lost for entry in mistakes):
+        reasons.append(f"{counted(len(mistakes), 'mistake')} in extra credit")
+    elif mistakes:
         reasons.append(
             f"{counted(len(mistakes), 'mistake costs', 'mistakes cost')} {_lost_by(mistakes)}"
         )
@@ -411,7 +418,7 @@ def _reasons_of_loss(sections: ReportSections) -> list[str]:
 
 
 def _lost_by(entries: Iterable[Entry]) -> str:
-    return format_points(sum((entry.lost for entry in entries), Decimal(0)))
+    return format_points(sum_points(entry.lost for entry in entries))
 
 
 def score_text(report: Report) -> str:
@@ -430,7 +437,7 @@ def counting_text(report: Report) -> str:
 
     For example, this is 58.5, excused, or a dash if nothing is decided.
     """
-    if report.grade is None:
+    if not report.grade:
         return sum_text(report.results)
     if report.grade.points is not None:
         return format_points(report.grade.points)
@@ -442,10 +449,10 @@ def grade_line(report: Report) -> str:
 
     It is empty if it is the score of automatic criteria.
     """
-    if report.grade is None:
+    if not report.grade:
         return ""
-    marked = [result.points for result in report.results if result.manual_mark is not None]
-    manual = sum(marked, Decimal(0))
+    marked = [result.points for result in report.results if result.manual_mark]
+    manual = sum_points(marked)
     text = f"{format_points(report.score - manual)} automatic"
     text += f" + {format_points(manual)} manual" if marked else ""
     text += f" - {format_points(-report.grade.late)} late" if report.grade.late else ""
@@ -468,8 +475,10 @@ def graded_line(report: Report) -> str:
 def verdict_line(report: Report) -> str:
     """Return whether ROS 2 loads the URDF."""
     submission = report.submission
-    text = "the URDF could not be read" if submission.unread else "no URDF was submitted"
-    if submission.path is not None and submission.has_urdf:
+    text = "the URDF could not be read"
+    if isinstance(submission.urdf, Absent):
+        text = submission.urdf.reason
+    elif submission.has_urdf:
         text = VERDICTS[submission.verdict] if submission.verdict else UNDECIDED
     return sentence(text)
 
@@ -597,8 +606,8 @@ def other_problems(report: Report) -> list[Problem]:
         (result.outcome.location, result.outcome.problem or result.outcome.message)
         for result in failed
     }
-    payers = {result.criterion.id for result in failed}
-    for paid in report.meant.paid if report.meant is not None else ():
+    payers = {result.id for result in failed}
+    for paid in report.meant.paid if report.meant else ():
         if paid.payer in payers:
             reported.add((paid.slip.location, paid.slip.assumption))
     told = [(RECOVERED, "") for result in failed if result.criterion.check.function is urdf_loads]
@@ -615,13 +624,13 @@ def next_command(report: Report, sections: ReportSections) -> str:
         return ""
     failed = [
         entry.result
-        for entry in (*sections.mistakes, *sections.unbuilt)
-        if entry.result.manual_mark is None
+        for entry in sections.mistakes + sections.unbuilt
+        if not entry.result.manual_mark
     ]
-    first = next(iter((*failed, *report.pending_automatic)), None)
-    if first is None:
+    first = next(iter(failed + report.pending_automatic), None)
+    if not first:
         return ""
-    command = f"grader explain {first.criterion.id}"
+    command = f"grader explain {first.id}"
     if not report.rubric.is_copy_of_shipped:
         command += f" --rubric {shell_quoted(report.rubric.path)}"
     return command

@@ -9,8 +9,10 @@ nor order.
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from decimal import Decimal
 from itertools import groupby
-from typing import Literal, NamedTuple, TypeVar
+from typing import Literal, TypeVar
 
+from grader.base.grouping import Strings
+from grader.base.records import Named
 from grader.base.source import Edits, Location, SourceOf
 from grader.base.text import (
     by_name,
@@ -22,13 +24,14 @@ from grader.base.text import (
 )
 from grader.lab.checks.manual import MANUAL_CHECKS
 from grader.lab.checks.outcome import Outcome
-from grader.lab.grading.report import Hint, Report, Result
+from grader.lab.grading.report import Hint, Report, Result, sum_points
 from grader.lab.rubric.criterion import Criterion, worth
 from grader.report.locations import excerpt_lines, location_text
 
 _T = TypeVar("_T")
 _K = TypeVar("_K", bound=Hashable)
-_MAX_FILES, _MAX_CRITERIA = 2, 3
+_MAX_FILES = 2
+_MAX_CRITERIA = 3
 
 # Of a submission, of a criterion, and of the list of evidence, problems and files.
 Role = Literal[
@@ -66,7 +69,7 @@ def name_status(result: Result) -> str:
     """
     if result.is_adjusted:
         return "adjusted"
-    if result.manual_mark is None:
+    if not result.manual_mark:
         return result.outcome.status
     if result.points >= result.criterion.points:
         return "passed"
@@ -83,7 +86,7 @@ def is_failure(result: Result) -> bool:
 
 def has_passed(result: Result) -> bool:
     """Return whether a check passed, without a mark or a comment."""
-    return name_status(result) == "passed" and result.manual_mark is None and result.comment is None
+    return name_status(result) == "passed" and not result.manual_mark and not result.comment
 
 
 def lost_points(results: Iterable[Result]) -> Decimal:
@@ -92,7 +95,7 @@ def lost_points(results: Iterable[Result]) -> Decimal:
     Extra credit does not count, and nothing that needs manual grading.
     """
     decided = (result for result in results if not (result.criterion.bonus or result.is_open))
-    return sum((result.criterion.maximum - result.points for result in decided), Decimal(0))
+    return sum_points(result.criterion.maximum - result.points for result in decided)
 
 
 def is_absent(result: Result) -> bool:
@@ -114,7 +117,7 @@ def is_not_found(result: Result) -> bool:
         is_manual(result)
         and result.is_open
         and result.outcome.expected is not None
-        and result.comment is None
+        and not result.comment
     )
 
 
@@ -131,7 +134,7 @@ def sum_text(results: tuple[Result, ...]) -> str:
     is_open = bool(results) and all(result.is_open for result in results)
     if is_open:
         return "–"
-    return format_points(sum((result.points for result in results), Decimal(0)))
+    return format_points(sum_points(result.points for result in results))
 
 
 def earned_text(*results: Result) -> str:
@@ -152,21 +155,21 @@ def write_points(results: Iterable[Result]) -> str:
     return worth(result.criterion for result in results).text
 
 
-class Line(NamedTuple):
+class Line(Named):
     """A printable sentence, and what it is."""
 
     role: Role
     text: str
 
 
-class Answer(NamedTuple):
+class Answer(Named):
     """The lines of an answer, and whose it is."""
 
     title: Literal["Found", "Model answer"]
-    lines: tuple[str, ...]
+    lines: Strings
 
 
-class Diff(NamedTuple):
+class Diff(Named):
     """The lines that edits change."""
 
     edits: Edits
@@ -175,7 +178,7 @@ class Diff(NamedTuple):
 Block = Line | Location | Answer | Diff  # a location is a place and its source line
 
 
-class Entry(NamedTuple):
+class Entry(Named):
     """A criterion with what is said about it."""
 
     result: Result
@@ -189,7 +192,7 @@ class Entry(NamedTuple):
     @property
     def id(self) -> str:
         """The id of the criterion."""
-        return self.result.criterion.id
+        return self.result.id
 
     @property
     def status(self) -> str:
@@ -230,11 +233,9 @@ class Entry(NamedTuple):
         This is the only one, or each with its points, this one first.
         """
         costly = [result for result in self.results if lost_points((result,))]
-        if [result.criterion.id for result in costly] in ([], [self.id]):
+        if [result.id for result in costly] in ([], [self.id]):
             return printable(self.id)
-        named = [
-            f"{result.criterion.id} {format_points(lost_points((result,)))}" for result in costly
-        ]
+        named = [f"{result.id} {format_points(lost_points((result,)))}" for result in costly]
         rest = f" and {len(named) - _MAX_CRITERIA} more" if len(named) > _MAX_CRITERIA else ""
         return printable(", ".join(named[:_MAX_CRITERIA]) + rest)
 
@@ -250,7 +251,7 @@ class Entry(NamedTuple):
         ]
 
 
-class Section(NamedTuple):
+class Section(Named):
     """A part of a report under a title: entries, then lines."""
 
     title: str
@@ -258,7 +259,7 @@ class Section(NamedTuple):
     lines: tuple[Line, ...] = ()
 
 
-class CriteriaGroup(NamedTuple):
+class CriteriaGroup(Named):
     """The criteria about one thing, in the rubric's order."""
 
     part: str
@@ -312,15 +313,16 @@ def make_blocks(entry: Entry, report: Report, *, everything: bool = False) -> It
 
     A hint is in place of the rubric's feedback; with `everything` there are both.
     """
-    result, outcome = entry.result, entry.result.outcome
+    result = entry.result
+    outcome = entry.result.outcome
     is_asked = outcome.status == "pending" and not result.is_adjusted
-    has_failed = entry.status == "failed" and result.manual_mark is None
+    has_failed = entry.status == "failed" and not result.manual_mark
     is_mistake = (
         has_failed and not result.carried
     )  # else the advice would be to change what is as it should be
     yield from _findings(result)
     at = _place_to_change(result) if is_mistake else outcome.location
-    if at is not None and has_failed:
+    if at and has_failed:
         yield at
     if is_asked:
         yield from _answers(result)
@@ -331,21 +333,22 @@ def make_blocks(entry: Entry, report: Report, *, everything: bool = False) -> It
         yield Line("expected", f"Passes when: {sentence(result.criterion.title)}")
     yield from _said_of_others(entry)
     if entry.skipped:
-        names = enumerated([result.criterion.id for result in entry.skipped])
+        names = enumerated([result.id for result in entry.skipped])
         yield Line("skipped", printable(f"Skipped because {entry.id} failed: {names}."))
 
 
 def _advice(entry: Entry, report: Report, *, everything: bool) -> Iterator[Block]:
     """Yield the hint, or the rubric's feedback; with `everything` both."""
-    result, criterion = entry.result, entry.result.criterion
+    result = entry.result
+    criterion = entry.result.criterion
     hint = result.hint
-    if hint is not None:
+    if hint:
         yield Line("hint", hint_text(entry, hint))
         if hint.edits and not entry.first:
             yield Diff(hint.edits)
-    has_subject = report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")
+    has_subject = report.submission.has_urdf or not criterion.check.is_of_robot
     feedback = criterion.feedback_on(result.outcome)
-    if feedback and has_subject and (everything or hint is None):
+    if feedback and has_subject and (everything or not hint):
         yield Line("feedback", _one_line(feedback))
 
 
@@ -363,22 +366,21 @@ def _said_of_others(entry: Entry) -> Iterator[Line]:
 
 def _place_to_change(result: Result) -> Location | None:
     """Return the place of a failure, or of its hint where that is in another line."""
-    at, hint = result.outcome.location, result.hint
-    if (
-        hint is None
-        or not hint.at.path
-        or (at is not None and (at.path, at.line) == (hint.at.path, hint.at.line))
-    ):
+    at = result.outcome.location
+    hint = result.hint
+    if not hint or not hint.at.path or (at and (at.path, at.line) == (hint.at.path, hint.at.line)):
         return at
     return hint.at
 
 
 def _findings(result: Result) -> Iterator[Line]:
     """Yield what the points of a criterion are due to, and the comment without points."""
-    outcome, mark, comment = result.outcome, result.manual_mark, result.comment
+    outcome = result.outcome
+    mark = result.manual_mark
+    comment = result.comment
     if result.is_adjusted:  # what the check found is not the student's mistake
         yield Line("finding", sentence(_one_line(result.why_given)))
-    elif mark is not None:
+    elif mark:
         words = f": {_one_line(mark.comment)}" if mark.comment else ""
         yield Line("finding", sentence(f"Marked{by_name(mark.by) or ' manually'}{words}"))
         if outcome.status != "pending":
@@ -389,7 +391,7 @@ def _findings(result: Result) -> Iterator[Line]:
         yield Line("finding", sentence(outcome.message))
         if result.why_given:
             yield Line("finding", result.why_given)
-    if comment is not None:
+    if comment:
         yield Line("comment", sentence(f"Comment{by_name(comment.by)}: {_one_line(comment.text)}"))
 
 
@@ -446,14 +448,15 @@ def hint_text(entry: Entry, hint: Hint) -> str:
     """
     if entry.first and not hint.fixed_with:
         return f"Fixed by the same edit as {entry.first}."
-    left, texts = list[str](), [hint.message.removesuffix(".")]
+    left = list[str]()
+    texts = [hint.message.removesuffix(".")]
     for result in entry.results:
-        if result.criterion.id in hint.gains:
+        if result.id in hint.gains:
             continue
-        if result.hint is not None and result.hint.fixed_with and result is not entry.result:
-            texts.append(f"{result.criterion.id}: {result.hint.message.removesuffix('.')}")
+        if result.hint and result.hint.fixed_with and result is not entry.result:
+            texts.append(f"{result.id}: {result.hint.message.removesuffix('.')}")
         else:
-            left.append(result.criterion.id)
+            left.append(result.id)
     if left and hint.gains:
         texts.append(f"Then check {enumerated(left, _MAX_CRITERIA)}")
     return sentence(". ".join(texts))
@@ -461,7 +464,7 @@ def hint_text(entry: Entry, hint: Hint) -> str:
 
 def plain_lines(entry: Entry, source_of: SourceOf) -> list[str]:
     """Return an entry as plain text: the finding, its place, the answer, what to do."""
-    lines: list[str] = []
+    lines = []
     for block in entry.blocks:
         match block:
             case Line("finding" | "comment" | "hint" | "feedback", text):
@@ -485,8 +488,8 @@ def pending_reason(result: Result) -> str:
         )  # which the heading says
     where = ""
     if isinstance(outcome.measured, tuple):
-        where = enumerated(list(map(str, outcome.measured)), _MAX_FILES)
-    elif outcome.location is not None:
+        where = enumerated(map(str, outcome.measured), _MAX_FILES)
+    elif outcome.location:
         at = outcome.location
         where = f"{at.path}:{at.line}" if counts_lines(at) else at.path
     doubt = outcome.problem or ("" if where else "not found")
@@ -498,13 +501,11 @@ def carried_text(cause: str, results: Sequence[Result]) -> str:
 
     They have their points.
     """
-    names, verb = (
-        enumerated([one.criterion.id for one in results]),
-        "it fails" if len(results) == 1 else "they fail",
-    )
+    names = enumerated([one.id for one in results])
+    verb = "it fails" if len(results) == 1 else "they fail"
     return printable(f"No points lost for {names}: {verb} only because of {cause}.")
 
 
 def looked_for(results: Iterable[Result]) -> Iterator[str]:
     """Yield what was searched in vain, of each answer and each picture."""
-    return (printable(f"{result.criterion.id}: {result.outcome.expected}") for result in results)
+    return (printable(f"{result.id}: {result.outcome.expected}") for result in results)

@@ -6,9 +6,11 @@ This is an explanation, what is wrong and what is right.
 from collections.abc import Iterator, Mapping
 from functools import cache
 from string import digits
-from typing import Any, NamedTuple
+from typing import Any
 
+from grader.base.names import last_part
 from grader.base.problems import Kind
+from grader.base.records import Named
 from grader.base.toml_file import read_toml, toml_literal
 from grader.files.reading import shipped_folder
 from grader.workspace.api import RULES
@@ -16,7 +18,7 @@ from grader.workspace.api import RULES
 _CHECKS = "checks"
 
 
-class _ExampleBlock(NamedTuple):
+class _ExampleBlock(Named):
     """A part of an example: a text in a file."""
 
     title: str
@@ -65,7 +67,7 @@ def make_blocks(example: Mapping[str, Any]) -> Iterator[_ExampleBlock]:
 
 
 def _name_frame(frame: str) -> str:
-    return frame.rpartition("/")[2]
+    return last_part(frame)
 
 
 def _name_file(name: str) -> str:

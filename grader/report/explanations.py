@@ -13,14 +13,15 @@ from grader.base.text import counted, enumerated, format_points, printable, sent
 from grader.base.toml_file import assignment, toml_literal
 from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.checks.check import Check
-from grader.lab.checks.manual import MANUAL_CHECKS, answered, picture_named
+from grader.lab.checks.manual import MANUAL_CHECKS, answered, manual, picture_named
 from grader.lab.checks.registry import check_names, find_check, unused_checks
 from grader.lab.rubric.criterion import Criterion, worth
 from grader.lab.rubric.rubric import Rubric, shipped_rubrics
 from grader.report.criteria import model_lines
 from grader.report.examples import example_blocks, explain_kind
+from grader.report.json_data import exact, to_json
 from grader.ros.api import parameter_explanation, releases_explanation
-from grader.workspace.api import EVERY_KIND, RULES, Rule, public_findings
+from grader.workspace.api import EVERY_KIND, RULES, Rule, known_rows, public_findings
 
 _WIDTH = 80
 _FOR_INSTRUCTORS = "For instructors: how it is checked\n----------------------------------"
@@ -63,12 +64,38 @@ def rubric_overview(rubric: Rubric) -> str:
             lines.append(
                 f"  {criterion.id:<{width}}  {points:>4}  {printable(criterion.title)}{bonus}"
             )
-            if criterion.adjustment is not None:
+            if criterion.adjustment:
                 lines.append(textwrap.indent(_fill(sentence(criterion.adjustment.message)), "    "))
             if criterion.answer:
                 answer = printable(" ".join(model_lines(criterion)))
                 lines.append(textwrap.indent(_fill(f"Model answer: {answer}"), "    "))
     return "\n".join(lines) + "\n"
+
+
+def rubric_json(rubric: Rubric) -> str:
+    """Return the parts and criteria of a rubric as JSON."""
+    parts = []
+    for part in rubric.parts:
+        criteria = [
+            {
+                "id": criterion.id,
+                "title": criterion.title,
+                "points": exact(criterion.points),
+                "bonus": criterion.bonus,
+                "check": criterion.check.name,
+            }
+            for criterion in rubric.criteria
+            if criterion.part == part.id
+        ]
+        parts.append({"id": part.id, "title": part.title, "criteria": criteria})
+    values = {
+        "id": rubric.id,
+        "title": rubric.title,
+        "sha256": rubric.sha256,
+        "points": exact(rubric.points),
+        "parts": parts,
+    }
+    return to_json(values)
 
 
 def checks_text() -> str:
@@ -83,7 +110,7 @@ def checks_text() -> str:
         except InputError as error:  # a broken plug-in must not hide the other checks
             listed.append(f"{name}\n  {error}\n")
             continue
-        if check is not None:
+        if check:
             fact = textwrap.indent(_fill(check.documentation.fact), "  ")
             listed.append(f"{name} ({check.distribution or 'grader'})\n{fact}\n{_arguments(check)}")
     listed += [
@@ -108,7 +135,7 @@ def explanation(name: str, rubric: Rubric) -> str:
         if criterion.id == name:
             return _paragraphs(_criterion_texts(criterion, rubric))
     check = find_check(name)
-    if check is not None:
+    if check:
         return _explain_check(check)
     fact = releases_explanation() if name == _RELEASES else parameter_explanation(name)
     if fact:
@@ -124,6 +151,7 @@ def _explain_kind(kind: Kind) -> str:
         _fill(explain_kind(kind)),
         EFFECTS[kind.effect],
     ]
+    texts.append(_terminal_text(kind.code))
     return _paragraphs([*texts, _rules_text(kind), *_examples(kind.code)])
 
 
@@ -142,7 +170,7 @@ def _explain_check(check: Check) -> str:
 def _guess_name(name: str, rubric: Rubric) -> str:
     """Return what an unknown name may mean, or where the names are listed, after a semicolon."""
     criteria = [criterion.id for criterion in rubric.criteria]
-    known = [kind.code for kind in EVERY_KIND] + [*RULES] + criteria + check_names()
+    known = [kind.code for kind in EVERY_KIND] + list(RULES) + criteria + check_names()
     lists = (
         f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, "
         "reports show the codes, and a parameter of a well-known node is NODE.NAME"
@@ -165,6 +193,17 @@ def list_rules(kind: Kind) -> list[Rule]:
     return [rule for rule in RULES.values() if rule.has(kind)]
 
 
+def list_outputs(name: str) -> list[str]:
+    """Return what the terminal prints where a rule is broken, or where a file has a problem."""
+    return [row.example for row in known_rows() if name in row.rules]
+
+
+def _terminal_text(name: str) -> str:
+    """Return the same as a list; empty without any."""
+    outputs = [f"    {output}" for output in list_outputs(name)]
+    return "\n".join(["In the terminal:", "", *outputs]) if outputs else ""
+
+
 def _rules_text(kind: Kind) -> str:
     """Return the rules of a kind, one a line."""
     lines = [f"  {rule.name}: {rule.sentence}" for rule in list_rules(kind)]
@@ -174,8 +213,7 @@ def _rules_text(kind: Kind) -> str:
 def _rule_text(rule: Rule) -> str:
     """Return the explanation of a rule, with that of its codes."""
     texts = [f"{rule.name}: a rule of `grader inspect`", rule.sentence, _fill(rule.why)]
-    for symptom in rule.symptoms:
-        texts.append(f"In the terminal:\n\n    {symptom.example}")
+    texts.append(_terminal_text(rule.name))
     for kind in dict.fromkeys((rule.kind, rule.doubtful)):
         texts.append(_fill(f"{kind.code} ({kind.severity}): {kind.title}. {explain_kind(kind)}"))
     return _paragraphs([*texts, public_findings(rule.name), *_examples(rule.name)])
@@ -190,14 +228,14 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
     yield f"{criterion.id} ({worth((criterion,)).text}, part {criterion.part} of {rubric.id})"
     yield _fill(f"Passes when: {criterion.title}.")
     yield _fill(_task_text(criterion))
-    if criterion.adjustment is not None:
+    if criterion.adjustment:
         yield _fill(sentence(criterion.adjustment.message))
     yield from map(_fill, criterion.feedback.values())
     if criterion.requires:
         yield _fill(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
     causes = [cause for carried in criterion.carried for cause in carried.causes]
     if causes:
-        names = enumerated([*dict.fromkeys(causes)], word="or")
+        names = enumerated(dict.fromkeys(causes), word="or")
         yield _fill(f"No points are lost for what is due to a mistake in {names} alone.")
     yield _FOR_INSTRUCTORS
     pose = _pose_text(criterion.at) if criterion.at else ""
@@ -223,6 +261,8 @@ def _task_text(criterion: Criterion) -> str:
     """Return what a person grades: a question or a picture; empty for what a program decides."""
     if criterion.check.function is answered:
         return f"Question: {criterion.arguments['question']} A person grades the answer."
+    if criterion.check.function is manual:
+        return f"{criterion.arguments['question']} A person decides it."
     if criterion.check.function in MANUAL_CHECKS:
         picture = picture_named(criterion.arguments["names"])
         return f"Hand in {picture} or a document that shows it. A person grades it."

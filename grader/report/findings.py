@@ -6,9 +6,9 @@ Editors and CI systems list them.
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from grader.base.problems import NO_FIXES, Fixes, Problem, Severity
+from grader.base.records import Named
 from grader.base.source import Base, Location
 from grader.base.text import printable, sentence
 from grader.files.reading import hash_bytes
@@ -20,7 +20,7 @@ _NUMBER_OF_LINE = r"\blines? \d+(?:(?:, | and )\d+)*|:\d+"
 DOCUMENTATION = "https://urdf-grader.github.io/urdf-grader/"
 
 
-class FindingKind(NamedTuple):
+class FindingKind(Named):
     """What a finding is a case of: a kind of problem, or a criterion."""
 
     id: str  # the code or the id
@@ -35,7 +35,7 @@ class FindingKind(NamedTuple):
         return f"{self.id} {self.name}".rstrip()
 
 
-class Finding(NamedTuple):
+class Finding(Named):
     """One thing that is wrong, with the place to look at."""
 
     rule: FindingKind
@@ -59,7 +59,8 @@ def sort_key(finding: Finding) -> tuple[str, int, int]:
 
 def finding_of_problem(problem: Problem) -> Finding:
     """Return the finding of a problem of a file; its rule is the kind of problem."""
-    kind, where = problem.kind, problem.location
+    kind = problem.kind
+    where = problem.location
     page = f"{DOCUMENTATION}problems.html#{kind.code.lower()}"
     rule = FindingKind(kind.code, kind.title, explain_kind(kind), page, problem.rule)
     message = message_at(printable(problem.message), where)

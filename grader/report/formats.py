@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from grader.report.inspection import Inspection
     from grader.report.shown_graph import ShownGraph
 
-_Need = Literal["", "console", "base", "identity"]
+_Need = Literal["", "console", "base", "identity", "findings"]
 
 
 class FormatRow(StrEnum):
@@ -29,7 +29,8 @@ class FormatRow(StrEnum):
 
     The function takes the report and returns text. With the need `console` it prints on a rich
     console instead; `base` is where the submission is in its repository; `identity` is whose result
-    it is, from Classroom 50's environment.
+    it is, from Classroom 50's environment. With the need `findings`, it takes these in place of the
+    report, then the base, and what gives the texts of files.
     """
 
     function: str
@@ -40,7 +41,9 @@ class FormatRow(StrEnum):
         """Return a member with its row; the defaults are for a look-up by name alone."""
         member = str.__new__(cls, name)
         member._value_ = name
-        member.function, member.needs, member.ending = function, needs, ending or name
+        member.function = function
+        member.needs = needs
+        member.ending = ending or name
         return member
 
 
@@ -64,12 +67,12 @@ class Format(FormatRow):
     )
     HTML = "html", "pages.student:render_html"
     SVG = "svg", "writers.svg:render_svg"
-    CONCISE = "concise", "writers.concise:render_concise", "base"
-    SARIF = "sarif", "writers.sarif:render_sarif", "base"
+    CONCISE = "concise", "writers.concise:render_concise", "findings"
+    SARIF = "sarif", "writers.sarif:render_sarif", "findings"
     CODEQUALITY = (
         "codequality",
         "writers.codequality:render_codequality",
-        "base",
+        "findings",
         "codequality.json",
     )
 
@@ -82,13 +85,13 @@ class InspectFormat(FormatRow):
     GITHUB = "github", "writers.inspection_github:inspection_github"
     SVG = "svg", "writers.inspection_svg:inspection_svg"
     HTML = "html", "pages.inspection_page:inspection_html"
-    CONCISE = "concise", "writers.concise:concise_inspection"
+    CONCISE = "concise", "writers.concise:render_concise", "findings"
     JUNIT = "junit", "writers.inspection_junit:inspection_junit", "", "xml"
-    SARIF = "sarif", "writers.sarif:sarif_inspection"
+    SARIF = "sarif", "writers.sarif:render_sarif", "findings"
     CODEQUALITY = (
         "codequality",
-        "writers.codequality:codequality_inspection",
-        "",
+        "writers.codequality:render_codequality",
+        "findings",
         "codequality.json",
     )
 
@@ -141,10 +144,14 @@ def render(
     The format `terminal` shows everything only if `verbose`.
     Raises InputError if the environment does not say whose result it is (Classroom 50).
     """
-    if kind.needs == "console":
-        return draw(partial(_load(kind.function), report, verbose=verbose), screen)
-    text: str = _load(kind.function)(report, *list_inputs(kind, base))
-    return text if kind is Format.GITHUB else without_commands(text)  # whose lines are commands
+    if kind.needs == "findings":
+        from grader.base.source import Base
+        from grader.report.mistakes import findings_in_report
+
+        return _render(
+            findings_in_report(report), kind, None, base or Base(), report.submission.source
+        )
+    return _render(report, kind, screen, *list_inputs(kind, base), verbose=verbose)
 
 
 def render_inspection(
@@ -158,22 +165,28 @@ def render_inspection(
 
     The format `terminal` spells out everything only if `verbose`.
     """
-    function = _load(kind.function)
-    if kind.needs == "console":
-        return draw(partial(function, inspection, verbose=verbose), screen)
-    text: str = function(inspection)
-    return (
-        text if kind is InspectFormat.GITHUB else without_commands(text)
-    )  # whose lines are commands
+    if kind.needs == "findings":
+        from grader.report.findings import findings_in_inspection
+
+        findings = findings_in_inspection(inspection)
+        return _render(findings, kind, None, inspection.base, inspection.source)
+    return _render(inspection, kind, screen, verbose=verbose)
 
 
 def render_graph(shown: "ShownGraph", kind: GraphFormat, screen: Screen | None = None) -> str:
     """Return a graph in a format, for a screen or a file."""
+    return _render(shown, kind, screen)
+
+
+def _render(
+    shown: object, kind: FormatRow, screen: Screen | None, *inputs: object, **options: bool
+) -> str:
+    """Return what is shown in a format; options are for the terminal."""
     function = _load(kind.function)
     if kind.needs == "console":
-        return draw(partial(function, shown), screen)
-    text: str = function(shown)
-    return without_commands(text)
+        return draw(partial(function, shown, **options), screen)
+    text: str = function(shown, *inputs)
+    return text if kind == Format.GITHUB else without_commands(text)  # whose lines are commands
 
 
 def _load(place: str) -> Any:

@@ -3,15 +3,17 @@
 This is problems, tree, joints and poses, and what is wrong in packages.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from itertools import islice
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.grouping import Strings
 from grader.base.problems import Problem
+from grader.base.records import Record
 from grader.base.source import Base, Source, SourceOf
 from grader.base.text import counted, printable
 from grader.base.transforms import Transform
@@ -20,8 +22,8 @@ from grader.report.readings import UNDECIDED, VERDICTS
 from grader.ros.api import Configuration, Joint, Reading
 
 if TYPE_CHECKING:
-    from grader.ros.api import MeshLoader
-    from grader.workspace.api import Extent, LogAnswer
+    from grader.ros.api import MeshLoader, Unreadable
+    from grader.workspace.api import DescribedRecording, Extent, LogAnswer
 
 MAX_LISTED = 500  # links, or problems on a page
 _MAX_INDENT = 60
@@ -35,8 +37,7 @@ NO_FAILURE = "no line of the log says that something fails"
 _NO_BASE = Base(is_outside=True)
 
 
-@dataclass(frozen=True, slots=True)
-class InspectedRobot:
+class InspectedRobot(Record):
     """A URDF as read, with its joints at given positions.
 
     Without `configuration`, ROS 2 reads nothing.
@@ -48,7 +49,7 @@ class InspectedRobot:
     relative_to: str | None = None
     hidden: frozenset[Problem] = frozenset()  # its problems that are ignored
     driving: str = ""  # how it stands and drives, if a controller or a plugin names its wheels
-    wheels: tuple[str, ...] = ()  # the links of these wheels
+    wheels: Strings = ()  # the links of these wheels
     meshes: "MeshLoader | None" = None  # loads its meshes for pictures
 
     @property
@@ -73,7 +74,7 @@ class InspectedRobot:
     @property
     def name(self) -> str:
         """The name of the robot in words."""
-        if self.configuration is None:
+        if not self.configuration:
             return "no robot"
         return f"robot {self.configuration.robot.name!r}"
 
@@ -83,7 +84,7 @@ class InspectedRobot:
         If a link has none, yield the reason.
         """
         robot = self.configuration
-        if robot is None or self.relative_to is None:
+        if not robot or self.relative_to is None:
             return
         for link in robot.robot.links:
             try:
@@ -92,8 +93,7 @@ class InspectedRobot:
                 yield link.name, str(reason)
 
 
-@dataclass(frozen=True, slots=True)
-class Inspection:
+class Inspection(Record):
     """The robots at a path, and what is wrong with the files and names of its packages.
 
     `extent` is what was read of a workspace; None for a URDF on its own.
@@ -109,7 +109,9 @@ class Inspection:
     ignored: int = 0  # how many problems are ignored, and not among these
     known: int = 0  # how many are known from a baseline, and not among these either
     log: "tuple[LogAnswer, ...] | None" = None  # what is said of a log; None without one
+    recordings: "tuple[DescribedRecording, ...]" = ()
     is_posed: bool = False  # whether positions of joints, or a frame of poses, are given
+    unread: "tuple[Unreadable, ...]" = ()  # the robots that cannot be read
 
     @property
     def robot(self) -> InspectedRobot | None:
@@ -121,6 +123,11 @@ class Inspection:
         """Return whether ROS 2 loads all robots, and nothing else is certainly wrong."""
         severities = {problem.severity for problem in self.package_problems}
         return "error" not in severities and all(robot.is_passed for robot in self.robots)
+
+    @property
+    def has_no_readable_robot(self) -> bool:
+        """Return whether there are robots, and none of them can be read."""
+        return self.unread != () and not self.robots
 
     @property
     def problems(self) -> tuple[Problem, ...]:
@@ -146,7 +153,7 @@ def lists(robot: InspectedRobot | None) -> Iterator[tuple[str, list[tuple[str, s
 
     Each is a title, and names with words about each.
     """
-    if robot is None or robot.configuration is None or robot.relative_to is None:
+    if not robot or robot.configuration is None or robot.relative_to is None:
         return  # there is neither a tree nor a frame
     links = _tree(robot.configuration)
     yield (
@@ -161,7 +168,8 @@ def lists(robot: InspectedRobot | None) -> Iterator[tuple[str, list[tuple[str, s
 
 
 def _first_rows(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
-    shown, rest = [*islice(rows, MAX_LISTED)], sum(1 for _ in rows)
+    shown = list(islice(rows, MAX_LISTED))
+    rest = sum(1 for _ in rows)
     if rest:
         return [*shown, (f"... and {rest} more", " (--format json lists all)")]
     return shown
@@ -169,33 +177,38 @@ def _first_rows(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
 
 def log_line(answer: "LogAnswer") -> str:
     """Return what is said of a message of a log, in one line."""
-    place = f"line {answer.line} of the log"
-    if answer.location is not None:
-        where = printable(answer.location.file_and_line)
-        return f"{where} explains {place}: {printable(answer.message)}"
-    return f"{place}: {printable(answer.message)}"
+    place = f"line {answer.line} of the log: {printable(answer.message)}"
+    if not answer.location:
+        return place
+    where = printable(answer.location.file_and_line)
+    if answer.relation == "see also":
+        return f"see also {where} for {place}"
+    return f"{where} {answer.relation} {place}"
 
 
 def effect(inspection: Inspection) -> str:
     """Return what ROS 2 does with the only robot; else how many problems there are."""
-    if inspection.robot is not None:
+    if inspection.robot:
         return EFFECTS[inspection.robot.verdict]
     return problem_counts(inspection)
 
 
+def count_severities(problems: Iterable[Problem]) -> str:
+    """Return how many errors, warnings and notes there are; empty without any."""
+    counts = Counter(problem.severity for problem in problems)
+    return ", ".join(counted(counts[name], name) for name in SEVERITIES if counts[name])
+
+
 def problem_counts(inspection: Inspection) -> str:
     """Return how many errors, warnings and notes an inspection has."""
-    severities = [problem.severity for problem in inspection.problems]
-    counts = []
-    for severity in SEVERITIES:
-        count = severities.count(severity)
-        if count:
-            counts.append(counted(count, severity))
+    counts = count_severities(inspection.problems)
     if counts:
-        return ", ".join(counts)
+        return counts
     if inspection.ignored or inspection.known:
         return "no other problems"
-    if inspection.extent is not None and not inspection.extent.is_whole:
+    if inspection.recordings and not inspection.robots and not inspection.extent:
+        return counted(len(inspection.recordings), "recording")
+    if inspection.extent and not inspection.extent.is_whole:
         return "no problems in what was read"
     return "the names agree"
 
@@ -206,7 +219,7 @@ def choose_look(inspection: Inspection) -> str:
     This is that of the only robot, else the worst of all.
     """
     verdicts = {robot.verdict for robot in inspection.robots}
-    if inspection.robot is None and not inspection.is_passed:
+    if not inspection.robot and not inspection.is_passed:
         return "rejected"
     return next((verdict for verdict in reversed(EFFECTS) if verdict in verdicts), "clean")
 
@@ -214,7 +227,7 @@ def choose_look(inspection: Inspection) -> str:
 def robot_line(robot: InspectedRobot) -> str:
     """Return a robot of several in a line: its name, and how many links and joints it has."""
     words = [EFFECTS[robot.verdict], printable(robot.name)]
-    if robot.configuration is not None:
+    if robot.configuration:
         model = robot.configuration.robot
         words += [counted(len(model.links), "link"), counted(len(model.joints), "joint")]
     return ", ".join(words)
@@ -236,7 +249,7 @@ def _tree(robot: Configuration) -> Iterator[tuple[str, str, Joint | None]]:
 
 def joint_text(joint: Joint | None) -> str:
     """Return a joint in words; empty for the parent joint of a root."""
-    if joint is None:
+    if not joint:
         return ""
     words = f"  {printable(joint.name)}: {printable(joint.type) or 'no type'}"
     if joint.type not in ("fixed", "floating"):
@@ -246,9 +259,9 @@ def joint_text(joint: Joint | None) -> str:
             else " about an unreadable axis"
         )
     limit = joint.limit if joint.type in ("revolute", "prismatic") else None
-    if limit is not None and isfinite(limit.upper - limit.lower):
+    if limit and isfinite(limit.upper - limit.lower):
         words += f", {limit.lower:g}..{limit.upper:g}"
-    if joint.mimic is not None:
+    if joint.mimic:
         words += f", mimics {printable(joint.mimic.joint)}"
     return words
 

@@ -17,6 +17,7 @@ from grader.report.formats import FormatRow
 
 if TYPE_CHECKING:
     from grader.lab.grading.report import Report
+    from grader.report.inspection import Inspection
 
 
 _THRESHOLD = r"[0-9]{1,9}(?:\.[0-9]{1,9})?%?"
@@ -78,6 +79,17 @@ def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitC
     return ExitCode.PASSED if is_passed else ExitCode.FAILED
 
 
+def inspection_exit_code(inspection: "Inspection", *, is_known: bool = False) -> ExitCode:
+    """Return the exit code of a command that inspects a workspace.
+
+    It is 2 if none of its robots can be read, else 1 if something is certainly wrong, unless that
+    `is_known` from now on.
+    """
+    if inspection.has_no_readable_robot:
+        return ExitCode.NOT_GRADED
+    return ExitCode.PASSED if inspection.is_passed or is_known else ExitCode.FAILED
+
+
 def read_saves(texts: Sequence[str], formats: type[_Row]) -> Saves[_Row]:
     """Return the formats and files that `--save` names. Raises GraderError."""
     saves = tuple(_read_save(text, formats) for text in texts)
@@ -110,7 +122,7 @@ def read_arguments(texts: Sequence[str]) -> dict[str, str]:
 
     Raises GraderError.
     """
-    arguments: dict[str, str] = {}
+    arguments = {}
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals or not name.removesuffix(":"):

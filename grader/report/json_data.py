@@ -4,7 +4,6 @@ Data and schemas follow from these.
 """
 
 import json
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
@@ -12,10 +11,12 @@ from functools import cached_property
 from operator import attrgetter
 from typing import Any, TypeVar
 
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
 from grader.base.text import without_tag_commands
 
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
-_UNPRINTABLE = re.compile(r"[^\n -~]")  # or any other character that is not ASCII
+_UNPRINTABLE = on_use(r"[^\n -~]")  # or any other character that is not ASCII
 
 
 def to_json(data: Mapping[str, Any]) -> str:
@@ -165,7 +166,7 @@ class JsonObject:
     """
 
     keys: Mapping[str, "KeyType | Key"]
-    optional: tuple[str, ...] = ()  # keys that are absent where they would be empty
+    optional: Strings = ()  # keys that are absent where they would be empty
 
     @cached_property
     def _pairs(self) -> dict[str, "Key"]:

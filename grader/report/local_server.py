@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 
 from grader import __version__
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
 from grader.base.text import printable
 from grader.report.open_browser import opened_in_browser
 from grader.report.writing import Terminal
@@ -76,11 +77,12 @@ class LocalServer(ThreadingTCPServer):
 
     def __init__(
         self,
-        application: Callable[[tuple[str, ...], bytes | None], Response],
+        application: Callable[[Strings, bytes | None], Response],
         port: int = 0,
         max_body: int = MAX_BODY,
     ) -> None:
-        self.application, self.max_body = application, max_body
+        self.application = application
+        self.max_body = max_body
         self._open: dict[socket, None] = {}  # the oldest first
         self.token = secrets.token_urlsafe(_TOKEN_BYTES)
         try:
@@ -96,7 +98,7 @@ class LocalServer(ThreadingTCPServer):
     def process_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection in a thread; of too many, no more is read of the oldest."""
         self._open[request] = None
-        for oldest in [*self._open][:-_MOST_OPEN]:
+        for oldest in list(self._open)[:-_MOST_OPEN]:
             _stop_reading(oldest)
         super().process_request(request, client_address)
 
@@ -116,7 +118,7 @@ class LocalServer(ThreadingTCPServer):
         super().finish_request(request, client_address)
         timer.cancel()
 
-    def answer(self, path: tuple[str, ...], body: bytes | None) -> Response:
+    def answer(self, path: Strings, body: bytes | None) -> Response:
         """Return the response of the application; a fault of it is one line."""
         try:
             return self.application(path, body)
@@ -141,8 +143,10 @@ class _Handler(BaseHTTPRequestHandler):
     """Reads one request of a connection (HTTP/1.0), and answers it."""
 
     server: LocalServer
-    server_version, sys_version = f"grader/{__version__}", ""
-    timeout, policy = _PATIENCE, SANDBOX
+    server_version = f"grader/{__version__}"
+    sys_version = ""
+    timeout = _PATIENCE
+    policy = SANDBOX
 
     def do_GET(self) -> None:
         """Answer a request: one with a body is from the page, which may change something."""
@@ -162,7 +166,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     do_POST = do_GET  # noqa: N815  the name of the base class
 
-    def _path(self) -> tuple[str, ...]:
+    def _path(self) -> Strings:
         """Return the path after the secret."""
         if (
             len(self.headers.get_all("Host", [])) != 1

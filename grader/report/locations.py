@@ -10,7 +10,7 @@ from itertools import groupby
 
 from grader.base.extents import find_end
 from grader.base.source import Edit, Location, Source, SourceOf
-from grader.base.text import first_lines, printable
+from grader.base.text import first_lines, indent_of, printable
 
 _ARCHIVE = r"(?is)(.*?\.(?:zip|tar|tgz|tar\.gz))/"
 # A line of a file: its number, its text up to the marked part, that part if it has one, and the
@@ -46,12 +46,14 @@ def excerpt(
     Together they have a number of characters around the marked part; without `indent` the line is
     not indented.
     """
-    line, start = source.line(where.line), where.column - 1
+    line = source.line(where.line)
+    start = where.column - 1
     end = _end_in_line(source, where)
-    cut = len(line) - len(line.lstrip()) if indent is None else min(indent, start)
+    cut = len(indent_of(line)) if indent is None else min(indent, start)
     if end - cut > room:
         cut = max(0, min(start - _MARGIN, len(line)))
-    before, meant = printable(line[cut:start]), printable(line[start:end])
+    before = printable(line[cut:start])
+    meant = printable(line[start:end])
     meant = meant[: max(0, room - len(before))]
     return before, meant, printable(line[end:])[: max(0, room - len(before + meant))].rstrip()
 
@@ -88,7 +90,7 @@ def excerpt_lines(where: Location, source_of: SourceOf) -> Iterator[str]:
     It yields nothing without the file.
     """
     source = source_of(where.path)
-    if source is not None:
+    if source:
         before, meant, after = excerpt(source, where, _EXCERPT_WIDTH)
         number = str(where.line)
         yield f"{number} | {(before + meant + after).rstrip()}"
@@ -103,12 +105,13 @@ def source_lines(where: Location, source_of: SourceOf, many: int = _AROUND) -> l
     Of a very long line it is the part around the marked text; there are none if the line is empty.
     """
     source = source_of(where.path)
-    line = source.line(where.line) if source is not None else ""
-    if source is None or not line.strip():
+    line = source.line(where.line) if source else ""
+    if not source or not line.strip():
         return []
     if len(line) > _MAX_WIDTH:
         return [(where.line, *excerpt(source, where, _MAX_WIDTH))]
-    first, last = max(1, where.line - many), where.line + many
+    first = max(1, where.line - many)
+    last = where.line + many
     while not source.line(last).strip():  # ends at the marked line
         last -= 1
     texts = [source.line(number) for number in range(first, last + 1)]
@@ -133,11 +136,12 @@ def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:
 
     They are each file, and each changed line before and after; of many the first.
     """
-    lines: list[str] = []
+    lines = []
     for path, of_file in groupby(sorted(edits), key=lambda edit: edit.path):
-        changes, source = list(of_file), source_of(path)
+        changes = list(of_file)
+        source = source_of(path)
         new_path = next((edit.renamed for edit in changes if edit.renamed), path)
-        lines += [f"--- {path if source is not None else '/dev/null'}", f"+++ {new_path}"]
+        lines += [f"--- {path if source else '/dev/null'}", f"+++ {new_path}"]
         lines += _changed_lines(changes, source)
     return [printable(line) for line in first_lines(lines, _MAX_LINES)]
 
@@ -159,11 +163,12 @@ def _texts_around(edits: list[Edit], source: Source | None) -> tuple[str, str]:
     height = 1 + max(edit.old.count("\n") for edit in edits)
     start = edits[0].line
     before = ""
-    if source is not None:
+    if source:
         before = "\n".join(source.line(number) for number in range(start, start + height))
     after = before
     for edit in reversed(edits):
-        column, old = edit.column - 1, edit.old.replace("\r\n", "\n")
+        column = edit.column - 1
+        old = edit.old.replace("\r\n", "\n")
         is_there = after.startswith(old, column) and len(after) <= _MAX_LENGTH * height
         if not is_there:
             old_texts = (edit.old for edit in edits)

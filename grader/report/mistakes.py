@@ -19,7 +19,7 @@ def findings_in_report(report: Report) -> list[Finding]:
     Mistakes are the criteria that lose points or cannot be decided.
     """
     findings = [finding_of_problem(problem) for problem in other_problems(report)]
-    undecided = {result.criterion.id for result in report.pending_automatic}
+    undecided = {result.id for result in report.pending_automatic}
     for entry in entries(report).values():
         is_mistake = is_failure(entry.result) and not entry.result.why_given
         if is_mistake or entry.id in undecided:
@@ -44,12 +44,12 @@ def mistakes_in_report(report: Report) -> list[Mistake]:
     sections = report_sections(report)
     mistakes = [
         _mistake(entry, report)
-        for entry in (*sections.mistakes, *sections.unbuilt)
+        for entry in sections.mistakes + sections.unbuilt
         if is_failure(entry.result)
     ]
     known = entries(report)
     for result in report.pending_automatic:
-        entry = known[result.criterion.id]
+        entry = known[result.id]
         mistake = _mistake(entry, report)
         mistakes.append(mistake._replace(cost=write_points([result])))
     return mistakes
@@ -62,8 +62,9 @@ def _mistake(entry: Entry, report: Report) -> Mistake:
         besides.append(_criterion_finding(other, report)._replace(message=message))
     reported = set()
     for result in entry.results:
-        at, problem = result.outcome.location, result.outcome.problem or result.outcome.message
-        if at is not None:
+        at = result.outcome.location
+        problem = result.outcome.problem or result.outcome.message
+        if at:
             reported.add((message_at(printable(problem), at), at))
     return Mistake(
         _criterion_finding(entry, report),
@@ -102,6 +103,6 @@ def _main_file(result: Result, report: Report) -> str:
     It is empty without both.
     """
     package = report.submission.package
-    if package is not None and result.criterion.check.subject not in ("urdf", "robot"):
+    if package and not result.criterion.check.is_of_robot:
         return package.path("package.xml")
     return report.submission.path or ""

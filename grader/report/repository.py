@@ -28,7 +28,7 @@ def _seen_from_here(path: str, single: Path | None) -> str:
     """Return what comes before the paths of a submission in the current folder."""
     start = os.path.normpath(path)
     with suppress(OSError, ValueError):  # the current folder was deleted; another drive
-        start = os.path.relpath(path if single is None else single)
+        start = os.path.relpath(single or path)
     return "" if start == os.curdir else f"{printable_path(start)}/"
 
 
@@ -38,10 +38,10 @@ def _base_in_repository(path: str, single: Path | None) -> Base:
     # A file keeps the name that was typed, even if that is a symlink; a folder is resolved.
     place = named.resolve() if is_folder else named.parent.resolve() / named.name
     root = _repository(place)
-    if root is None:
+    if not root:
         return Base(is_outside=True)
-    if is_folder or single is not None:
-        start = place if single is None else single
+    if is_folder or single:
+        start = single or place
         if not start.is_relative_to(root):
             return Base(is_outside=True)
         folder = start.relative_to(root).as_posix()

@@ -2,18 +2,21 @@
 
 import io
 import os
-import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.text import without_commands
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-_RANDOM_ID = re.compile("\x1b\\]8;id=[0-9-]+;")  # that rich gives a link
-_MIN_WIDTH, _DEFAULT_WIDTH, _MAX_WIDTH = 40, 80, 500
+_RANDOM_ID = on_use("\x1b\\]8;id=[0-9-]+;")  # that rich gives a link
+_MIN_WIDTH = 40
+_DEFAULT_WIDTH = 80
+_MAX_WIDTH = 500
 
 
 def columns(terminal: int = _DEFAULT_WIDTH) -> int:
@@ -24,7 +27,7 @@ def columns(terminal: int = _DEFAULT_WIDTH) -> int:
     return max(_MIN_WIDTH, terminal)
 
 
-class Screen(NamedTuple):
+class Screen(Named):
     """The terminal or file of a report.
 
     It has its width in columns, its encoding, whether it shows colours, the folder whose

@@ -7,16 +7,17 @@ No file is written through a symlink of a submission, and none over the gradeboo
 
 import errno
 import os
-import re
 import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, BinaryIO
 
 from grader.base.errors import InputError
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.text import printable, printable_path
 from grader.files.limits import ROBOT_ENDINGS
 from grader.report.screen import Screen
@@ -32,13 +33,13 @@ CHECKOUTS = (
     "GITHUB_WORKSPACE",
     "CI_PROJECT_DIR",
 )  # the repository that GitHub Actions and GitLab CI checked out
-_TEMPORARY = re.compile(
+_TEMPORARY = on_use(
     r"\.[0-9a-f]{16}(?:-([0-9]+))?\.tmp"
 )  # with the number of the process that writes it
 _MAX_SYMLINKS = 40  # in one path, as in Linux
 
 
-class Terminal(NamedTuple):
+class Terminal(Named):
     """What a command prints with; the command line passes it."""
 
     print: Callable[[str], None]
@@ -90,31 +91,38 @@ def save_all(
 ) -> None:
     """Write files, each atomically, and none before all are written beside their places.
 
-    A path that is not a regular file, such as a pipe or a device, is written to directly. A symlink
-    is followed unless it is in one of the submissions, which are folders and files that students
-    made. A new file gets the permissions `mode`; one that is replaced keeps its own. Raises
-    InputError if a file cannot be written: then none has changed.
+    A path that is not a regular file, such as a pipe or a device, is written to directly, and
+    refused if it would have to wait, as a FIFO that nothing reads. A symlink is followed unless it
+    is in one of the submissions, which are folders and files that students made. A new file gets
+    the permissions `mode`; one that is replaced keeps its own. Raises InputError if a file cannot
+    be written: then none has changed.
     """
-    temporaries: dict[Path, Path] = {}
+    temporaries = {}
+    streams = {}
     try:
         for path, data in files.items():
             with _as_input_error(path):
                 refuse_symlinks(path, submissions)
-                if not is_stdout(path) and (path.is_file() or not path.exists()):
+                if is_stdout(path):
+                    continue
+                if path.is_file() or not path.exists():
                     target = Path(os.path.realpath(path))
                     temporaries[path] = _write_beside(target, data, mode)
+                else:
+                    streams[path] = _open_stream(path)
         for path, data in files.items():
             with _as_input_error(path):
                 if path in temporaries:
                     temporaries[path].replace(os.path.realpath(path))
-                elif is_stdout(
-                    path
-                ):  # also if that is redirected to a file: printed text goes there as well
+                elif path in streams:
+                    with streams[path] as stream:
+                        stream.write(data)
+                else:  # also if that is redirected to a file: printed text goes there as well
                     write_stdout(data)
-                else:
-                    with path.open("wb") as file:
-                        file.write(data)
     finally:
+        for stream in streams.values():
+            with suppress(OSError):
+                stream.close()
         for temporary in temporaries.values():
             with suppress(OSError):
                 temporary.unlink(missing_ok=True)
@@ -130,6 +138,18 @@ def _as_input_error(path: Path) -> Iterator[None]:
             raise missing_folder(path) from None
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"cannot write {path}: {reason}") from None
+
+
+def _open_stream(path: Path) -> BinaryIO:
+    """Open a pipe or a device to write to it. Raises OSError for a FIFO that nothing reads."""
+    try:
+        handle = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
+    except OSError as error:
+        if error.errno == errno.ENXIO:
+            error.strerror = "no program reads this pipe"
+        raise
+    os.set_blocking(handle, True)
+    return os.fdopen(handle, "wb")
 
 
 def make_folder(folder: Path) -> None:
@@ -239,7 +259,9 @@ def _symlinks(path: Path) -> Iterator[Path]:
     The parents of each are no symlinks.
     """
     absolute = path.absolute()
-    here, rest, count = Path(absolute.anchor), list(reversed(absolute.parts[1:])), 0
+    here = Path(absolute.anchor)
+    rest = list(reversed(absolute.parts[1:]))
+    count = 0
     while rest and count <= _MAX_SYMLINKS:
         name = rest.pop()
         there = here.parent if name == ".." else here / name

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from grader.ros.known.releases import StatedReleases as StatedReleases
     from grader.ros.nodes.node_facts import EndpointKind as EndpointKind
     from grader.ros.nodes.node_facts import Qos as Qos
+    from grader.ros.nodes.python.package_slips import package_slips as package_slips
     from grader.ros.package.mesh_loading import MeshLoader as MeshLoader
     from grader.ros.package.package import MANIFEST as MANIFEST
     from grader.ros.package.package import SETUP as SETUP
@@ -48,6 +49,27 @@ if TYPE_CHECKING:
     from grader.ros.package.robot_readings import RobotReadings as RobotReadings
     from grader.ros.package.robot_readings import read_edited as read_edited
     from grader.ros.package.robots import is_robot as is_robot
+    from grader.ros.recording.cdr import Message as Message
+    from grader.ros.recording.cdr import MessageDecoder as MessageDecoder
+    from grader.ros.recording.database import write_database as write_database
+    from grader.ros.recording.motion import read_track as read_track
+    from grader.ros.recording.recorded import Channel as Channel
+    from grader.ros.recording.recorded_robot import FrameComparison as FrameComparison
+    from grader.ros.recording.recorded_robot import WheelTravel as WheelTravel
+    from grader.ros.recording.recorded_robot import measure_travel as measure_travel
+    from grader.ros.recording.recorded_robot import missing_position as missing_position
+    from grader.ros.recording.recorded_robot import read_description as read_description
+    from grader.ros.recording.recorded_topics import RecordedTopic as RecordedTopic
+    from grader.ros.recording.recorded_topics import find_pose as find_pose
+    from grader.ros.recording.recording import TRANSFORMS as TRANSFORMS
+    from grader.ros.recording.recording import Recording as Recording
+    from grader.ros.recording.recording_files import MAX_RECORDINGS as MAX_RECORDINGS
+    from grader.ros.recording.recording_files import RecordingFiles as RecordingFiles
+    from grader.ros.recording.recording_files import find_recordings as find_recordings
+    from grader.ros.recording.recording_files import (
+        read_longest_recording as read_longest_recording,
+    )
+    from grader.ros.recording.recording_files import read_recording as read_recording
     from grader.ros.urdf.driving import Drive as Drive
     from grader.ros.urdf.driving import describe_driving as describe_driving
     from grader.ros.urdf.driving import plan_drive as plan_drive
@@ -77,11 +99,22 @@ else:
         "known.parameter_texts": "parameter_explanation",
         "known.releases": "Release StatedReleases",
         "nodes.node_facts": "EndpointKind Qos",
+        "nodes.python.package_slips": "package_slips",
         "package.mesh_loading": "MeshLoader",
         "package.package": "MANIFEST SETUP Package",
         "package.robot_file": "Absent Read Unreadable",
         "package.robot_readings": "RobotReadings read_edited",
         "package.robots": "is_robot",
+        "recording.cdr": "Message MessageDecoder",
+        "recording.database": "write_database",
+        "recording.motion": "read_track",
+        "recording.recorded": "Channel",
+        "recording.recorded_robot": "FrameComparison WheelTravel measure_travel missing_position "
+        "read_description",
+        "recording.recorded_topics": "RecordedTopic find_pose",
+        "recording.recording": "TRANSFORMS Recording",
+        "recording.recording_files": "MAX_RECORDINGS RecordingFiles find_recordings "
+        "read_longest_recording read_recording",
         "urdf.driving": "Drive describe_driving plan_drive",
         "urdf.kinematics": "Configuration",
         "urdf.model": "Box Capsule Cylinder Joint Link Mesh Origin Robot Sphere Visual",

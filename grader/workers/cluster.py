@@ -16,6 +16,7 @@ from typing import Any
 
 from grader import __version__
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
 from grader.base.text import printable_path
 from grader.workers.pool import Processes, WorkerError
 
@@ -40,7 +41,8 @@ class Cluster(Executor):
             import distributed
         except ImportError:
             raise InputError("--cluster needs Dask: pip install 'urdf-grader[cluster]'") from None
-        self._timeout, self._address = timeout, address
+        self._timeout = timeout
+        self._address = address
         self._preload = tuple(preload)
         self._is_gone = False
         for name in [
@@ -169,7 +171,7 @@ def _version_and_access(roots: Sequence[str]) -> tuple[str, str]:
 
 def _run_in_process(
     timeout: float,
-    preload: tuple[str, ...],
+    preload: Strings,
     function: Callable[..., Any],
     arguments: tuple[Any, ...],
     named: dict[str, Any],
@@ -187,7 +189,7 @@ def _run_in_process(
 
 
 @lru_cache(maxsize=1)
-def _processes(preload: tuple[str, ...]) -> Processes:
+def _processes(preload: Strings) -> Processes:
     from distributed import get_worker
 
     # Dask starts its workers as daemons, which may not have processes of their own; those that

@@ -25,7 +25,7 @@ def worker_context(preload: Sequence[str] = ()) -> Any:
     # may be imported.
     os.environ["PYTHONSAFEPATH"] = "1"
     is_forked = "forkserver" in multiprocessing.get_all_start_methods()
-    context: Any = multiprocessing.get_context("forkserver" if is_forked else "spawn")
+    context = multiprocessing.get_context("forkserver" if is_forked else "spawn")
     if is_forked:
         context.set_forkserver_preload(list(preload))
     return context

@@ -82,7 +82,9 @@ class Processes(Executor):
         memory: int = MAX_MEMORY,
         preload: Sequence[str] = (),
     ) -> None:
-        self._workers, self._timeout, self._memory = workers, timeout, memory
+        self._workers = workers
+        self._timeout = timeout
+        self._memory = memory
         self._preload = preload
         CONSTS.sleep_unit = 0.02  # seconds; a pool ends after one of them
         self._context = forks.worker_context(preload)

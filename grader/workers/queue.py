@@ -69,8 +69,12 @@ class Queue(Generic[_Task, _Result]):
         given_up: Callable[[_Task, Exception], _Result],
         size: int = 0,
     ) -> None:
-        self._executor, self._workers, self._size = executor, workers, size
-        self._work, self._retried, self._given_up = work, retried, given_up
+        self._executor = executor
+        self._workers = workers
+        self._size = size
+        self._work = work
+        self._retried = retried
+        self._given_up = given_up
         self._waiting_alone: deque[tuple[_Task, int]] = deque()
         self._running: dict[Future[list[_Result]], tuple[Sequence[_Task], int]] = {}
         self._began = 0.0  # when the first results came: until then workers start

@@ -133,7 +133,7 @@ def rewritings(submission: Submission, named: tuple[str, ...] = ()) -> dict[str,
 def running(submission: Submission) -> set[tuple[object, ...]]:
     """Return the nodes that run, what each opens, and the parameters that it gets."""
     found: set[tuple[object, ...]] = set()
-    [path] = [launch.source.path for _, launch in submission.workspace.launches.roots]
+    [path] = [launch.source.path for launch in submission.workspace.launches.outermost]
     for node in launch_graph(submission.workspace, path).nodes:
         assert not node.doubt + node.opens_more
         found |= {(node.name, end.kind, end.name, end.type) for end in node.ends}

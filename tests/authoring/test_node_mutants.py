@@ -21,7 +21,7 @@ def test_interfaces_and_code_have_mutants() -> None:
     submission = cart(laundry_files())
     found = Counter[str]()
     for path, text in laundry_files().items():
-        for change in node_changes(submission, Source(path, text), path, ("interfaces", "code")):
+        for change in node_changes(submission, Source(path, text), ("interfaces", "code")):
             assert text[change.start : change.end] != change.new
             found[change.mutation] += 1
     assert found == {
@@ -70,7 +70,7 @@ def main():
 def test_nodes_in_python_have_mutants() -> None:
     """Each is what rclpy refuses for certain."""
     source = Source("lamp.py", PYTHON)
-    changes = node_changes(cart(laundry_files()), source, "lamp.py", CODE)
+    changes = node_changes(cart(laundry_files()), source, CODE)
     found = {(it.mutation, PYTHON[it.start : it.end], it.new) for it in changes}
     order = "self.lights = self.create_publisher(Bool, 'light', 10)"
     init = "super().__init__('lamp')"
@@ -89,7 +89,7 @@ def test_a_family_that_is_not_compared_has_no_mutants() -> None:
     """A criterion has to look at it."""
     submission = cart(laundry_files())
     for path, text in laundry_files().items():
-        assert [*node_changes(submission, Source(path, text), path, TOPICS)] == []
+        assert [*node_changes(submission, Source(path, text), TOPICS)] == []
 
 
 CPP = """#include "rclcpp/rclcpp.hpp"
@@ -106,7 +106,7 @@ int main(int argc, char ** argv)
 def test_nodes_in_cpp_have_mutants() -> None:
     """Without what initialises rclcpp, or what spins."""
     source = Source("src/beacon.cpp", CPP)
-    found = [*node_changes(cart(laundry_files()), source, "beacon.cpp", CODE)]
+    found = [*node_changes(cart(laundry_files()), source, CODE)]
     assert [(it.mutation, CPP[it.start : it.end].strip()) for it in found] == [
         ("spin removed", "rclcpp::spin(node);"),
         ("init removed", "rclcpp::init(argc, argv);"),

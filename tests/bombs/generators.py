@@ -22,7 +22,8 @@ Bomb = Callable[[int], Files]
 BOMBS: dict[str, Bomb] = {}
 
 
-def _bomb(build: Bomb) -> Bomb:
+def put_into_bombs(build: Bomb) -> Bomb:
+    """Put a generator into the table of all."""
     BOMBS[build.__name__] = build
     return build
 
@@ -31,28 +32,28 @@ def _bomb(build: Bomb) -> Bomb:
 # ----------------------------------------------------------------------
 
 
-@_bomb
+@put_into_bombs
 def yaml_aliases(n: int) -> Files:
     levels = lines(n, lambda i: f"a{i + 1}: &a{i + 1} {{a: *a{i}, b: *a{i}, c: *a{i}}}")
     text = f"a0: &a0 {{x: 1, y: 2}}\n{levels}\nn0:\n  ros__parameters: *a{n}\n"
     return {**launched(started(1, "P + 'p.yaml'")), "config/p.yaml": text}
 
 
-@_bomb
+@put_into_bombs
 def yaml_aliases_of_lists(n: int) -> Files:
     levels = lines(n, lambda i: f"a{i + 1}: &a{i + 1} [*a{i}, {{k: *a{i}}}]")
     text = f"a0: &a0 [{{plugin: a}}]\n{levels}\nn0:\n  ros__parameters: {{p: *a{n}}}\n"
     return {**launched(started(1, "P + 'p.yaml'")), "config/p.yaml": text}
 
 
-@_bomb
+@put_into_bombs
 def nodes_with_one_file(n: int) -> Files:
     values = lines(n, lambda i: f"    p{i}: {i}")
     text = f"/**:\n  ros__parameters:\n{values}\n"
     return {**launched(started(n, "P + 'p.yaml'")), "config/p.yaml": text}
 
 
-@_bomb
+@put_into_bombs
 def nodes_with_many_files(n: int) -> Files:
     files = ", ".join(f"P + 'p{i}.yaml'" for i in range(20))
     texts = {
@@ -62,7 +63,7 @@ def nodes_with_many_files(n: int) -> Files:
     return {**launched(started(n, files)), **texts}
 
 
-@_bomb
+@put_into_bombs
 def own_nodes_with_files(n: int) -> Files:
     code = program(f"self.declare_parameter('p{i}', {i})" for i in range(n))
     text = f"/**:\n  ros__parameters:\n{lines(n, lambda i: f'    p{i}: {i}')}\n"
@@ -70,13 +71,13 @@ def own_nodes_with_files(n: int) -> Files:
     return {**files, "my_robot/x.py": code, "config/p.yaml": text}
 
 
-@_bomb
+@put_into_bombs
 def sections_with_wildcards(n: int) -> Files:
     text = lines(n, lambda i: f"n*{i}*x:\n  ros__parameters: {{p: 1}}")
     return {**launched(started(n, "P + 'p.yaml'")), "config/p.yaml": text}
 
 
-@_bomb
+@put_into_bombs
 def sections_of_other_names(n: int) -> Files:
     text = lines(n, lambda i: f"node_of_robot_{i}_x:\n  ros__parameters: {{p: 1}}")
     more = ", namespace='node_of_robot_%d_y' % i"
@@ -84,20 +85,20 @@ def sections_of_other_names(n: int) -> Files:
     return {**files, "config/p.yaml": text}
 
 
-@_bomb
+@put_into_bombs
 def keys_with_dots(n: int) -> Files:
     text = "n0:\n  ros__parameters:\n" + lines(n, lambda i: f"    a.b{i}.c: {i}")
     return {**launched(started(1, "P + 'p.yaml'")), "config/p.yaml": text}
 
 
-@_bomb
+@put_into_bombs
 def parameters_in_words(n: int) -> Files:
     words = ", ".join(f"'-p', 'p{i}:={i}'" for i in range(n))
     more = f", arguments=['--ros-args', {words}]"
     return launched(started(20, more=more))
 
 
-@_bomb
+@put_into_bombs
 def plugin_lists(n: int) -> Files:
     files: Files = {}
     for k in range(n // 10):
@@ -109,7 +110,7 @@ def plugin_lists(n: int) -> Files:
     return {**package(), **files}
 
 
-@_bomb
+@put_into_bombs
 def aliases_to_misspelt_keys(n: int) -> Files:
     text = lines(n, lambda i: f"n{i}:\n  ros__parametersx{i}: {{p: 1}}")
     return {**launched(started(1, "P + 'p.yaml'")), "config/p.yaml": text}
@@ -119,7 +120,7 @@ def aliases_to_misspelt_keys(n: int) -> Files:
 # ----------------------------------------------------------------------
 
 
-@_bomb
+@put_into_bombs
 def topics_of_one_name(n: int) -> Files:
     code = program(
         f"self.create_{kind}(String, 't', {last})"
@@ -130,7 +131,7 @@ def topics_of_one_name(n: int) -> Files:
     return {**files, "my_robot/x.py": code}
 
 
-@_bomb
+@put_into_bombs
 def topics_of_similar_names(n: int) -> Files:
     code = program(
         line
@@ -144,7 +145,7 @@ def topics_of_similar_names(n: int) -> Files:
     return {**files, "my_robot/x.py": code}
 
 
-@_bomb
+@put_into_bombs
 def node_started_often(n: int) -> Files:
     code = program(
         line
@@ -158,7 +159,7 @@ def node_started_often(n: int) -> Files:
     return {**files, "my_robot/x.py": code}
 
 
-@_bomb
+@put_into_bombs
 def remappings(n: int) -> Files:
     code = program(f"self.create_publisher(String, 'a{i}', 10)" for i in range(n))
     rules = ", ".join(f"('a{i}', 'b{i}')" for i in range(n))
@@ -166,14 +167,14 @@ def remappings(n: int) -> Files:
     return {**files, "my_robot/x.py": code}
 
 
-@_bomb
+@put_into_bombs
 def nodes_without_program(n: int) -> Files:
     programs = ", ".join(f"'program_{word(i)}_of_robot = my_robot.x:main'" for i in range(n))
     files = launched(started(n, program="'program_%d_of_robat' % i"), programs=programs)
     return {**files, "my_robot/x.py": program(["pass"])}
 
 
-@_bomb
+@put_into_bombs
 def launches_of_one_node(n: int) -> Files:
     text = launched(started(2))["launch/a.launch.py"]
     files: Files = {}
@@ -183,7 +184,7 @@ def launches_of_one_node(n: int) -> Files:
     return files
 
 
-@_bomb
+@put_into_bombs
 def lifecycle_names(n: int) -> Files:
     names = ", ".join(f"node_{word(i)}_of_robat" for i in range(n))
     text = f"lifecycle_manager:\n  ros__parameters:\n    node_names: [{names}]\n"
@@ -195,7 +196,7 @@ def lifecycle_names(n: int) -> Files:
     return {**launched(f"[{manager}] + {nodes}"), "config/p.yaml": text}
 
 
-@_bomb
+@put_into_bombs
 def modules_that_import(n: int) -> Files:
     files = launched(started(1), programs="'x = my_robot.m0:main'")
     for i in range(n):
@@ -204,7 +205,7 @@ def modules_that_import(n: int) -> Files:
     return files
 
 
-@_bomb
+@put_into_bombs
 def callbacks_that_are_functions(n: int) -> Files:
     timers = [f"self.create_timer(1.0, f_{word(i)})" for i in range(n)]
     functions = lines(n, lambda i: f"def f_{word(i)}():\n    pass")
@@ -212,7 +213,7 @@ def callbacks_that_are_functions(n: int) -> Files:
     return {**files, "my_robot/x.py": f"{functions}\n{program(timers)}"}
 
 
-@_bomb
+@put_into_bombs
 def callbacks_that_are_methods(n: int) -> Files:
     services = [f"self.create_service(Trigger, 's{i}', self.m_{word(i)})" for i in range(n)]
     methods = lines(
@@ -223,7 +224,7 @@ def callbacks_that_are_methods(n: int) -> Files:
     return {**files, "my_robot/x.py": f"from std_srvs.srv import Trigger\n{code}"}
 
 
-@_bomb
+@put_into_bombs
 def classes_of_nodes_of_each_other(n: int) -> Files:
     classes = lines(
         n,
@@ -240,7 +241,7 @@ def classes_of_nodes_of_each_other(n: int) -> Files:
 # ----------------------------------------------------------------------
 
 
-@_bomb
+@put_into_bombs
 def frames_of_similar_names(n: int) -> Files:
     text = "n0:\n  ros__parameters:\n" + lines(
         n, lambda i: f"    a{i}: {{base_frame: link_{word(i)}}}"
@@ -248,7 +249,7 @@ def frames_of_similar_names(n: int) -> Files:
     return {**package(urdf=robot(n)), "config/p.yaml": text}
 
 
-@_bomb
+@put_into_bombs
 def joints_of_controllers(n: int) -> Files:
     joints = ", ".join(f"joint_{word(i)}" for i in range(n))
     text = (
@@ -263,7 +264,7 @@ def joints_of_controllers(n: int) -> Files:
     return {**package(urdf=urdf), "config/p.yaml": text}
 
 
-@_bomb
+@put_into_bombs
 def controllers_and_spawners(n: int) -> Files:
     types = lines(
         n,
@@ -280,7 +281,7 @@ def controllers_and_spawners(n: int) -> Files:
     return {**launched(actions), "config/p.yaml": text}
 
 
-@_bomb
+@put_into_bombs
 def srdf_links(n: int) -> Files:
     pairs = lines(
         n,
@@ -293,14 +294,14 @@ def srdf_links(n: int) -> Files:
     return {**package(urdf=robot(n)), "config/my_robot.srdf": text}
 
 
-@_bomb
+@put_into_bombs
 def static_transforms(n: int) -> Files:
     words = "['--frame-id', 'link_x%d' % i, '--child-frame-id', 'link_%d_a' % i]"
     node = f"Node(package='tf2_ros', executable='static_transform_publisher', arguments={words})"
     return launched(f"[{node} for i in range({n})]", urdf=robot(n))
 
 
-@_bomb
+@put_into_bombs
 def bridges_and_sensors(n: int) -> Files:
     sensors = lines(
         n,
@@ -318,7 +319,7 @@ def bridges_and_sensors(n: int) -> Files:
     return {**package(urdf=urdf), "config/bridge.yaml": rows}
 
 
-@_bomb
+@put_into_bombs
 def models_of_a_world(n: int) -> Files:
     uris = lines(n, lambda i: f"<include><uri>model://model_of_raam_{word(i)}</uri></include>")
     world = f'<sdf version="1.9"><world name="w">\n{uris}\n</world></sdf>'
@@ -326,7 +327,7 @@ def models_of_a_world(n: int) -> Files:
     return {**package(), "worlds/w.sdf": world, **models}
 
 
-@_bomb
+@put_into_bombs
 def arguments_of_xacro(n: int) -> Files:
     macros = lines(
         n,
@@ -342,7 +343,7 @@ def arguments_of_xacro(n: int) -> Files:
     return {**package(), "urdf/other.urdf.xacro": text}
 
 
-@_bomb
+@put_into_bombs
 def paths_in_xacro(n: int) -> Files:
     properties = lines(
         n, lambda i: f'<xacro:property name="p{i}" value="$(find my_robot)/meshes/m{i}.stl"/>'
@@ -355,7 +356,7 @@ def paths_in_xacro(n: int) -> Files:
     return {**package(), "urdf/other.urdf.xacro": text, **meshes}
 
 
-@_bomb
+@put_into_bombs
 def robots_of_xacro(n: int) -> Files:
     loop = '<xacro:macro name="m" params="n"><xacro:if value="${n}"><xacro:m n="${n - 1}"/></xacro:if></xacro:macro>'
     calls = '<xacro:m n="60"/>' * 40
@@ -366,7 +367,7 @@ def robots_of_xacro(n: int) -> Files:
     return {**package(), **{f"urdf/r{i}.urdf.xacro": text for i in range(n // 10)}}
 
 
-@_bomb
+@put_into_bombs
 def paths_that_are_absent(n: int) -> Files:
     text = "n0:\n  ros__parameters:\n" + lines(
         n, lambda i: f"    a{i}: $(find-pkg-share my_robot)/config/file_of_robot_{word(i)}.yaml"
@@ -375,21 +376,21 @@ def paths_that_are_absent(n: int) -> Files:
     return {**launched(started(1, "P + 'p.yaml'")), "config/p.yaml": text, **others}
 
 
-@_bomb
+@put_into_bombs
 def maps_without_image(n: int) -> Files:
     maps = {f"maps/m{i}.yaml": f"image: room_{word(i)}.pgm\nresolution: 0.05\n" for i in range(60)}
     images = {f"maps/rooms_{word(i)}.pgm": "" for i in range(n)}
     return {**package(), **maps, **images}
 
 
-@_bomb
+@put_into_bombs
 def displays_of_rviz(n: int) -> Files:
     displays = lines(n, lambda i: f"    - {{Class: rviz/TF{i}, Name: d{i}, Enabled: true}}")
     text = f"Visualization Manager:\n  Displays:\n{displays}\n"
     return {**package(), "rviz/a.rviz": text}
 
 
-@_bomb
+@put_into_bombs
 def dependencies(n: int) -> Files:
     more = lines(n, lambda i: f"<depend>package_of_robot_{word(i)}</depend>")
     finds = lines(n, lambda i: f'<mesh filename="package://package_of_robat_{word(i)}/a.stl"/>')
@@ -397,7 +398,7 @@ def dependencies(n: int) -> Files:
     return package(more=more, urdf=urdf)
 
 
-@_bomb
+@put_into_bombs
 def packages_that_depend(n: int) -> Files:
     files: Files = {}
     for k in range(n // 10):
@@ -410,14 +411,14 @@ def packages_that_depend(n: int) -> Files:
 # ----------------------------------------------------------------------
 
 
-@_bomb
+@put_into_bombs
 def launch_files_with_loops(n: int) -> Files:
     loop = "def f():\n    x = 0\n    for a in range(100):\n        for b in range(100):\n            x = x + 1\nf()\n"
     text = launched(started(1))["launch/a.launch.py"]
     return {**package(), **{f"launch/a{i}.launch.py": loop + text for i in range(n)}}
 
 
-@_bomb
+@put_into_bombs
 def launch_files_in_xml(n: int) -> Files:
     groups = lines(
         n,
@@ -429,13 +430,13 @@ def launch_files_in_xml(n: int) -> Files:
     return {**package(), "launch/a.launch.xml": f"<launch>\n{groups}\n</launch>"}
 
 
-@_bomb
+@put_into_bombs
 def launch_files_in_yaml(n: int) -> Files:
     nodes = lines(n, lambda i: f"- node: {{pkg: my_robot, exec: x, name: n{i}}}")
     return {**package(), "launch/a.launch.yaml": f"launch:\n{nodes}\n"}
 
 
-@_bomb
+@put_into_bombs
 def includes_with_arguments(n: int) -> Files:
     passed = lines(n, lambda i: f'<arg name="argument_{word(i)}_x" value="1"/>')
     declared = lines(n, lambda i: f'<arg name="argument_{word(i)}" default="1"/>')
@@ -447,7 +448,7 @@ def includes_with_arguments(n: int) -> Files:
     }
 
 
-@_bomb
+@put_into_bombs
 def includes_of_includes(n: int) -> Files:
     include = '<include file="$(find-pkg-share my_robot)/launch/a{}.launch.xml"/>'
     files = {
@@ -463,72 +464,72 @@ def includes_of_includes(n: int) -> Files:
 # ----------------------------------------------------------------------
 
 
-@_bomb
+@put_into_bombs
 def cmake_targets(n: int) -> Files:
     targets = lines(n, lambda i: f"add_library(library_of_robot_{word(i)} INTERFACE)")
     links = lines(n, lambda i: f"target_link_libraries(library_of_robat_{word(i)} a)")
     return cmake(f"{targets}\n{links}")
 
 
-@_bomb
+@put_into_bombs
 def cmake_unset_variables(n: int) -> Files:
     found = lines(n, lambda i: f"find_package(p{i})")
     return cmake(f"{found}\n{lines(n, lambda i: f'set(x ${{z{i}}})')}")
 
 
-@_bomb
+@put_into_bombs
 def cmake_missing_files(n: int) -> Files:
     names = " ".join(f"config/file_{word(i)}_x.yaml" for i in range(n))
     text = f"install(FILES {names} DESTINATION share/my_robot)"
     return cmake(text, (f"config/file_{word(i)}_y.yaml" for i in range(n)))
 
 
-@_bomb
+@put_into_bombs
 def cmake_calls(n: int) -> Files:
     variables = lines(n, lambda i: f"set(v{i} 1)")
     calls = lines(n, lambda _: "f()")
     return cmake(f"{variables}\nfunction(f)\nendfunction()\n{calls}")
 
 
-@_bomb
+@put_into_bombs
 def cmake_globs(n: int) -> Files:
     globs = lines(n, lambda i: f"file(GLOB_RECURSE g{i} config/*{i}*a*b.yaml)")
     return cmake(globs, (f"config/f{i}.yaml" for i in range(n)))
 
 
-@_bomb
+@put_into_bombs
 def cmake_patterns(n: int) -> Files:
     patterns = " ".join(f"PATTERN *a{i}*b EXCLUDE" for i in range(n))
     text = f"install(DIRECTORY config DESTINATION share/my_robot {patterns})"
     return cmake(text, (f"config/f{i}.yaml" for i in range(n)))
 
 
-@_bomb
+@put_into_bombs
 def cmake_folders(n: int) -> Files:
     names = " ".join("config" for _ in range(n))
     text = f"install(DIRECTORY {names} DESTINATION share/my_robot)"
     return cmake(text, (f"config/f{i}.yaml" for i in range(n)))
 
 
-@_bomb
+@put_into_bombs
 def cmake_lists(n: int) -> Files:
     return cmake(lines(n, lambda i: f"list(APPEND L item_{i})\nset(x ${{L}})"))
 
 
-@_bomb
+@put_into_bombs
 def cmake_packages(n: int) -> Files:
     found = lines(n, lambda i: f"find_package(package_of_robot_{word(i)} REQUIRED)")
     names = " ".join(f"package_of_robat_{word(i)}" for i in range(n))
     return cmake(f"{found}\nadd_library(a INTERFACE)\nament_target_dependencies(a {names})")
 
 
-@_bomb
+@put_into_bombs
 def cmake_conditions(n: int) -> Files:
     words = " OR ".join(f'EXISTS "${{CMAKE_SOURCE_DIR}}/a{i}"' for i in range(n))
     return cmake(f"if({words})\nendif()", (f"b/c{i}" for i in range(n)))
 
 
-@_bomb
+@put_into_bombs
 def setup_globs(n: int) -> Files:
     globs = ", ".join(f"('share/my_robot/g{i}', glob('config/*{i}*x'))" for i in range(n))
     files = package()
@@ -536,7 +537,7 @@ def setup_globs(n: int) -> Files:
     return {**files, **{f"config/f{i}.yaml": "" for i in range(n)}}
 
 
-@_bomb
+@put_into_bombs
 def setup_missing_files(n: int) -> Files:
     names = ", ".join(f"'config/file_{word(i)}_x.yaml'" for i in range(n))
     files = package()
@@ -546,14 +547,14 @@ def setup_missing_files(n: int) -> Files:
     return {**files, **{f"config/file_{word(i)}_y.yaml": "" for i in range(n)}}
 
 
-@_bomb
+@put_into_bombs
 def entry_points(n: int) -> Files:
     programs = ", ".join(f"'x{i} = my_robot.x:function_{word(i)}_x'" for i in range(n))
     code = lines(n, lambda i: f"def function_{word(i)}(): pass")
     return {**package(programs=programs), "my_robot/x.py": code}
 
 
-@_bomb
+@put_into_bombs
 def meshes_that_are_absent(n: int) -> Files:
     visuals = lines(
         n,
@@ -566,18 +567,18 @@ def meshes_that_are_absent(n: int) -> Files:
     return {**package(urdf=urdf), **{f"meshes/part_{word(i)}_y.stl": "" for i in range(n)}}
 
 
-@_bomb
+@put_into_bombs
 def ignored_files(n: int) -> Files:
     rules = lines(n, lambda i: f"*a{i}*b*c")
     return {**package(), ".gitignore": rules, **{f"config/f{i}.yaml": "" for i in range(n)}}
 
 
-@_bomb
+@put_into_bombs
 def names_in_documents(n: int) -> Files:
     return {**package(), "README.md": "ROS 2 humble " * n, "Dockerfile": "FROM ros:humble\n" * n}
 
 
-@_bomb
+@put_into_bombs
 def loose_robots(n: int) -> Files:
     return {**package(), **{f"robots/r{i}.urdf": URDF for i in range(n)}}
 
@@ -601,7 +602,7 @@ def compiled_node(body: str, members: str = "") -> str:
     )
 
 
-@_bomb
+@put_into_bombs
 def cpp_variables_of_variables(n: int) -> Files:
     names = lines(n, lambda i: f'const std::string a{i + 1} = a{i} + "a";')
     return compiled(
@@ -609,7 +610,7 @@ def cpp_variables_of_variables(n: int) -> Files:
     )
 
 
-@_bomb
+@put_into_bombs
 def cpp_constants_that_double(n: int) -> Files:
     names = lines(n, lambda i: f"const std::string a{i + 1} = a{i} + a{i};")
     return compiled(
@@ -617,7 +618,7 @@ def cpp_constants_that_double(n: int) -> Files:
     )
 
 
-@_bomb
+@put_into_bombs
 def cpp_variables_of_each_other(n: int) -> Files:
     body = lines(
         n,
@@ -626,93 +627,93 @@ def cpp_variables_of_each_other(n: int) -> Files:
     return compiled(compiled_node(f"{body}\ncreate_client<A>(a{n - 1});"))
 
 
-@_bomb
+@put_into_bombs
 def cpp_uses_of_one_variable(n: int) -> Files:
     uses = lines(n, lambda i: f"declare_parameter(name, {i});")
     return compiled(compiled_node(f'std::string name = "a";\n{uses}'))
 
 
-@_bomb
+@put_into_bombs
 def cpp_declarations_of_one_variable(n: int) -> Files:
     body = lines(n, lambda i: f'{{ std::string name = "a"; declare_parameter(name, {i}); }}')
     return compiled(compiled_node(body))
 
 
-@_bomb
+@put_into_bombs
 def cpp_uses_of_one_member(n: int) -> Files:
     uses = lines(n, lambda i: f"declare_parameter(name_, {i});")
     return compiled(compiled_node(uses, 'std::string name_ = "a";'))
 
 
-@_bomb
+@put_into_bombs
 def cpp_classes_of_classes(n: int) -> Files:
     classes = lines(n, lambda i: f"class A{i + 1} : public A{i} {{}};")
     return compiled(f"class A0 : public rclcpp::Node {{}};\n{classes}\n{compiled_node('')}")
 
 
-@_bomb
+@put_into_bombs
 def cpp_names_of_names(n: int) -> Files:
     names = lines(n, lambda i: f"using A{i + 1} = A{i};")
     return compiled(f"using A0 = rclcpp::Node;\n{names}\nclass N : public A{n} {{}};\n")
 
 
-@_bomb
+@put_into_bombs
 def cpp_namespaces(n: int) -> Files:
     opened = lines(n, lambda i: f"using namespace a{i};")
     body = lines(n, lambda i: f'create_publisher<B{i}>("b", 1);')
     return compiled(f"{opened}\n{compiled_node(body)}")
 
 
-@_bomb
+@put_into_bombs
 def cpp_nested_namespaces(n: int) -> Files:
     opened, closed = lines(n, lambda i: f"namespace a{i} {{"), "}" * n
     return compiled(f"{opened}\nconst auto b = c;\n{closed}\n{compiled_node('')}")
 
 
-@_bomb
+@put_into_bombs
 def cpp_headers(n: int) -> Files:
     headers = {f"src/h{i}.hpp": f'#include "h{i + 1}.hpp"\n' for i in range(n)}
     return {**compiled(f'#include "h0.hpp"\n{compiled_node("")}'), **headers}
 
 
-@_bomb
+@put_into_bombs
 def cpp_headers_of_each_other(n: int) -> Files:
     names = lines(20, lambda i: f'#include "h{i}.hpp"')
     headers = {f"src/h{i}.hpp": f"{names}\n{'int a;' * (n // 20)}\n" for i in range(20)}
     return {**compiled(f"{names}\n{compiled_node('')}"), **headers}
 
 
-@_bomb
+@put_into_bombs
 def cpp_targets_of_one_file(n: int) -> Files:
     body = lines(n, lambda i: f'declare_parameter("p{i}", {i});')
     return compiled(compiled_node(body), count=max(1, n // 10))
 
 
-@_bomb
+@put_into_bombs
 def cpp_macros(n: int) -> Files:
     macros = lines(n, lambda i: f"#define A{i + 1} A{i}")
     return compiled(f'#define A0 "a"\n{macros}\n{compiled_node(f"declare_parameter(A{n}, 1);")}')
 
 
-@_bomb
+@put_into_bombs
 def cpp_texts_side_by_side(n: int) -> Files:
     texts = lines(n, lambda _: '"a"', " ")
     return compiled(compiled_node(f"declare_parameter({texts}, 1);"))
 
 
-@_bomb
+@put_into_bombs
 def cpp_calls_in_calls(n: int) -> Files:
     return compiled(compiled_node(f"{'f(' * n}1{')' * n};"))
 
 
-@_bomb
+@put_into_bombs
 def cpp_objects_that_are_given(n: int) -> Files:
     made = lines(n, lambda i: f"auto n{i} = std::make_shared<N>(); f{i}(n{i});")
     program = f"{compiled_node('')}int main() {{ {made} }}\n"
     return {**compiled(""), "src/p.cpp": program}
 
 
-@_bomb
+@put_into_bombs
 def cpp_frames(n: int) -> Files:
     body = lines(n, lambda i: f't.child_frame_id = "b{i}"; b.sendTransform(t);')
     return compiled(compiled_node(f"geometry_msgs::msg::TransformStamped t;\n{body}"))

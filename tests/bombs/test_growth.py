@@ -14,7 +14,7 @@ from grader.ros.package.robot_file import Read
 from grader.ros.python import budget
 from grader.workspace.opening.opening import open_workspace
 from tests.bombs.files import Files, package
-from tests.bombs.generators import BOMBS
+from tests.bombs.findings import BOMBS
 from tests.bombs.long_texts import LONG_TEXTS
 from tests.examples import spread
 from tests.work import counted_work, hang_limit
@@ -58,6 +58,7 @@ def test_work_grows_as_the_input(
 ) -> None:
     """Twice the input takes at most 2.3 times the work, beyond that of an empty package."""
     monkeypatch.setattr(budget, "_OF_WORKSPACE", _TINY)
+    monkeypatch.setattr(budget, "_OF_PACKAGE", _TINY // 40)
     inputs = {"empty": package(), "one": BOMBS[name](_SIZE), "two": BOMBS[name](2 * _SIZE)}
     folders = {size: _written(tmp_path / size, files) for size, files in inputs.items()}
     read(folders["empty"])  # what is loaded once

@@ -79,7 +79,9 @@ CASES = tuple(_case(check, table, Scene) for check, table in _ALL if "scene" in 
 _OTHERS = tuple(
     _case(check, table, Submitted) for check, table in _ALL if "package" in table["row"][0]
 )
-PENDING_CASES = tuple(case for case in _OTHERS if case.name in ("answered", "evidence_shown"))
+PENDING_CASES = tuple(
+    case for case in _OTHERS if case.name in ("answered", "evidence_shown", "manual")
+)
 PACKAGE_CASES = tuple(case for case in _OTHERS if case not in PENDING_CASES)
 CASE = {case.name: case for case in CASES}
 PACKAGE_CASE = {case.name: case for case in PACKAGE_CASES}

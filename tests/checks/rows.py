@@ -20,6 +20,7 @@ from grader.ros.urdf.shapes import UnknownShape
 from tests.checks.outcomes import AnyCheck, Arguments, NoSubject, ask, graded, own_message
 from tests.checks.robots import PATH, Scene
 from tests.checks.submissions import REFERENCE, Submitted
+from tests.recordings import cart
 
 CORPUS = Path(__file__).parents[1] / "corpus" / "checks"
 GIVEN = (
@@ -31,6 +32,7 @@ GIVEN = (
     "renamed",
     "files",
     "copies",
+    "recorded",
     "edits",
     "reference",
     "with",
@@ -137,7 +139,11 @@ def _packages() -> dict[str, Any]:
 def submitted(given: Fields) -> Submitted:
     """Return a package with its changes."""
     name = given["package"]
-    bases = {"reference": REFERENCE, "empty": Submitted({})}
+    bases = {
+        "reference": REFERENCE,
+        "empty": Submitted({}),
+        "cart": Submitted({"cart.urdf": cart.URDF}),
+    }
     of = bases[name] if name in bases else submitted(_packages()[name])
     of = of.without(*given.get("removed", ()))
     for old, new in given.get("renamed", {}).items():
@@ -150,6 +156,8 @@ def submitted(given: Fields) -> Submitted:
         for path, name in given.get("copies", {}).items()
     }
     of = of.with_files(encoded | copied)
+    for name, options in given.get("recorded", {}).items():
+        of = of.with_files(cart.files_of(name, _floats(options)))
     for path, old, new in given.get("edits", ()):
         of = of.with_files({path: edited(of.data(path).decode(), [(old, new)])})
     return of

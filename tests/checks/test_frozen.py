@@ -1,7 +1,6 @@
 """No check can change what the next one gets."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
 from typing import Any
 
 import pytest
@@ -27,12 +26,9 @@ WITH_ALL = """<robot name="a"><link name="l"/><link name="m"><inertial><mass val
 
 
 def names_of(value: object) -> tuple[str, ...]:
-    """Return the names of the fields of a dataclass or named tuple."""
-    return (
-        tuple(one.name for one in fields(value))
-        if is_dataclass(value)
-        else getattr(value, "_fields", ())
-    )
+    """Return the names of the fields of a record, dataclass or named tuple."""
+    names: tuple[str, ...] = getattr(value, "_fields", ())
+    return (*getattr(value, "__dataclass_fields__", ()), *names)
 
 
 def inside(value: object, found: dict[int, object]) -> Iterator[object]:

@@ -14,6 +14,10 @@ pytestmark = pytest.mark.slow
 BINARY = b"\0" * 80 + struct.pack("<I", 1) + b"\0" * 50
 
 
+def _collada(count: int) -> bytes:
+    return b"<COLLADA><float_array id='a' count='%d'>0 1 2 3 4 5</float_array></COLLADA>" % count
+
+
 def file_with(name: str, data: bytes) -> File:
     """Return a file with this content."""
     return File(f"meshes/{name}", len(data), partial(_read, data))
@@ -30,6 +34,10 @@ def _read(data: bytes, limit: int, *, first: bool = False) -> bytes:
         ("a.STL", b"  SOLID arm\n"),
         ("a.stl", BINARY),
         ("a.dae", b'<?xml version="1.0"?>\n<COLLADA version="1.4.1"/>'),
+        ("a.dae", _collada(6)),
+        ("a.dae", _collada(7).partition(b" 5")[0]),
+        ("a.dae", _collada(6) + b"<!-- %s -->" % _collada(9)),
+        ("a.dae", b"<COLLADA><float_array count='1'><![CDATA[5]]></float_array></COLLADA>"),
         ("a.obj", b"# made by hand\nv 0 0 0\n"),
         ("a.glb", b"glTF\2\0\0\0"),
         ("a.ply", b"ply\nformat ascii 1.0\n"),
@@ -52,6 +60,7 @@ def test_a_mesh_of_its_format_has_no_fault(name: str, data: bytes) -> None:
         ("a.obj", b"\0\0", "is no OBJ file"),
         ("a.glb", b"{}", "is no GLB file"),
         ("a.ply", b"obj", "is no PLY file"),
+        ("a.dae", _collada(7), "promises 7 values in a <float_array> and has 6"),
     ],
 )
 def test_a_mesh_of_another_format_is_named(name: str, data: bytes, fault: str) -> None:

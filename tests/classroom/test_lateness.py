@@ -56,3 +56,22 @@ def test_days_by_time(seconds: int, grace: int) -> None:
     assert days(submitted, lab(f"{DUE}{POLICY}grace_minutes = {grace}\n")) == (
         0 if over <= 0 else -(-over // 86_400)
     )
+
+
+def test_points_for_a_delay() -> None:
+    """Points are deducted once, for each day, or both; a student who is not late loses none."""
+    assert cost("11", 3, "points_per_day = 2\n") == -6
+    assert cost("11", 3, "points = 1.5\n") == Decimal("-1.5")
+    assert cost("11", 3, "points = 1\npoints_per_day = 1\nfloor_percent = 90\n") == Decimal("-1.1")
+    assert cost("11", 0, "points = 1.5\n") == 0
+
+
+def test_tokens_cover_days() -> None:
+    """Days that tokens cover cost nothing, and the reason says how many they are."""
+    policy = lab("points = 1\npoints_per_day = 2\n")
+    late = lateness(policy, Student("ann", days_late=3, tokens=2), Decimal(11))
+    assert (late.points, late.days) == (Decimal(-3), 3)
+    assert late.reason.endswith("; tokens cover 2 days")
+    covered = lateness(policy, Student("ann", days_late=1, tokens=2), Decimal(11))
+    assert (covered.points, covered.reason.partition("; ")[2]) == (Decimal(0), "tokens cover 1 day")
+    assert lateness(policy, Student("ann", tokens=2), Decimal(11)).reason == ""

@@ -85,6 +85,41 @@ def test_an_identifier_of_one_and_the_name_of_another() -> None:
         find_typed((*CLASS, Student("s9", "Zoe Zelkova", login="birch")), "birch", ADVICE)
 
 
+@pytest.mark.parametrize(
+    ("typed", "key"),
+    [
+        ("Fir, Li", "f1"),
+        ("Li Fir", "f1"),
+        ("Fir, Li Mei", "f2"),
+        ("Li, Fir", "f3"),
+        ("Mei", "f2"),
+        ("li@example.org", "f4"),
+        ("77", "f5"),
+        ("li", "f6"),
+    ],
+)
+def test_what_is_equal_comes_before_what_is_similar(typed: str, key: str) -> None:
+    """Of names that contain each other, and of two in opposite orders, the exact one is meant."""
+    students = [
+        Student("f1", "Fir, Li"),
+        Student("f2", "Fir, Li Mei"),
+        Student("f3", "Li, Fir"),
+        Student("f4", "Gum, 77", "li@example.org"),
+        Student("f5", "li@example.org Hazel", canvas="77"),
+        Student("f6", sis="li"),
+    ]
+    assert find_typed(students, typed, ADVICE).key == key
+    with pytest.raises(InputError, match="is ambiguous"):
+        find_typed(students, "Fir", ADVICE)
+
+
+def test_two_students_of_one_name_are_ambiguous() -> None:
+    """A whole name is exact for both."""
+    students = [Student("g1", "Ivy, Jo"), Student("g2", "Jo Ivy")]
+    with pytest.raises(InputError, match="'Jo Ivy' is ambiguous"):
+        find_typed(students, "Jo Ivy", ADVICE)
+
+
 def test_at_most_ten_are_listed() -> None:
     """The others are counted."""
     many = [Student(f"s{number:02}", f"Kim{number} Müller") for number in range(13)]

@@ -122,3 +122,20 @@ def test_a_full_disk_ends_the_command(top: Path, monkeypatch: pytest.MonkeyPatch
     """It concerns all pages: none is blamed on a student."""
     with pytest.raises(InputError, match="No space left"):
         pages(InputError("No space left"), top, monkeypatch)
+
+
+def test_grades_of_some_students(top: Path) -> None:
+    """Only theirs are written; nobody else's row in the file of the LMS changes."""
+    book = ("--gradebook", top / "book")
+    exported = grader("export", "csv", *book, "--for", "anna", "--for", "ben")
+    rows = [line.split(",")[0] for line in exported.stdout.splitlines()]
+    assert rows == ["id", "anna", "ben"]
+    lms = "Student,ID,SIS Login ID,Section,A small lab (77)\n    Points Possible,,,,11\n"
+    (top / "lms.csv").write_text(f"{lms}Anna,101,anna,S1,\nBen,102,ben,S1,\n")
+    options = ("--into", top / "lms.csv", "--for", "anna", "--pending-as-zero")
+    filled = grader("export", "canvas", *book, *options)
+    assert [line.partition(",")[0] for line in filled.stdout.splitlines()[2:]] == ["Anna"]
+    assert "is not released" in filled.stderr
+    refused = grader("export", "html", *book, "--for", "anna")
+    assert refusal(refused).startswith("export html takes no --for: ")
+    assert "there is no student 'zoe'" in refusal(grader("export", "csv", *book, "--for", "zoe"))

@@ -107,6 +107,61 @@ def test_one_node_and_its_neighbours() -> None:
     assert errors.startswith("grader: --node: there is no node 'nobody'; there are: /robot_state")
 
 
+def test_a_node_in_a_namespace_is_named_without_it(workspace: Path) -> None:
+    """If only one has the name."""
+    first, second = (f"Node(package='demo', executable='talker', namespace='{it}')" for it in "ab")
+    add_launch(workspace, first)
+    assert "/a/talker" in shown(workspace, "--node", "talker")
+    add_launch(workspace, f"{first},\n        {second}")
+    _, _, errors = graph(workspace, "--node", "talker")
+    assert "there is no node 'talker'; there are: /a/talker and /b/talker" in errors
+
+
+def test_what_connects_and_all_of_it(workspace: Path) -> None:
+    """An end without another one is left out, or stands in its node; --verbose says all."""
+    talker = "Node(package='demo', executable='talker', parameters=[{'topic': 'x'}])"
+    heard = "Node(package='demo', executable='talker', name='b', remappings=[('answer', 'x')])"
+    turtle = "Node(package='turtlesim', executable='turtlesim_node', parameters=[{'a': 1}])"
+    add_launch(workspace, talker, heard, turtle)
+    text = shown(workspace)
+    assert "subscribes /answer" in text
+    assert "publishes, and nothing here asks for: /turtle1/" in text
+    assert not re.search(r"/spawn|parameters:|topic = x", text)
+    whole = shown(workspace, "--verbose")
+    assert re.search(r"serves, and nothing here asks for: .*/spawn", whole)
+    assert "parameters: topic = x" in whole
+    connected = shown(workspace, "--connected")
+    assert connected.startswith("demo/launch/demo.launch.py: 2 nodes, 1 connection")
+    assert "turtlesim" not in connected.partition("Other")[0]
+    assert "/answer" not in connected
+    drawn = shown(workspace, "--format", "mermaid")
+    assert '["/talker<br/>subscribes /answer"]' in drawn
+    assert "/answer" not in shown(workspace, "--connected", "--format", "mermaid")
+    assert [len(node["ends"]) for node in json_of(workspace, "--connected")["nodes"]] == [1, 1]
+
+
+def test_a_node_has_few_lines_of_what_connects_to_nothing(workspace: Path) -> None:
+    """The others are counted."""
+    rows = [f"        self.create_publisher(String, 't{number}', 10)" for number in range(9)]
+    end = "        self.create_subscription"
+    code = TALKER.replace(end, "\n".join([*rows, end]))
+    (workspace / "demo/demo/talker.py").write_text(code)
+    add_launch(workspace, "Node(package='demo', executable='talker')")
+    drawn = shown(workspace, "--format", "mermaid")
+    assert drawn.count("<br/>publishes /t") == 5
+    assert "<br/>and 5 more" in drawn
+
+
+def test_the_head_counts_what_is_in_the_files_of_the_launch(workspace: Path) -> None:
+    """What another launch file has is in the count of all."""
+    add_launch(workspace, "Node(package='demo', executable='talker')")
+    add_launch(workspace, "Node(package='demo', executable='tlker')", name="other.launch.py")
+    shown_head = graph(workspace, "--launch", "demo.launch.py")[1].split("\n")[0]
+    assert shown_head.endswith(" (1 note in the files of this launch)")
+    other_head = graph(workspace, "--launch", "other.launch.py")[1].split("\n")[0]
+    assert re.search(r" \(1 error, .*1 note in the files of this launch\)$", other_head)
+
+
 def test_reports_are_saved(tmp_path: Path) -> None:
     """In any format, beside what is printed."""
     saves = [
@@ -177,6 +232,7 @@ def test_findings_stand_at_what_they_concern(workspace: Path) -> None:
     status, text, _ = graph(workspace)
     assert status == 1
     assert "does not connect: std_msgs/msg/String is not std_msgs/msg/Int32" in text
+    assert "2 nodes, 0 connections, 2 pairs not connected, 0 transforms" in text
     data = json_of(workspace)
     found = [
         finding for node in data["nodes"] for end in node["ends"] for finding in end["findings"]
@@ -186,7 +242,7 @@ def test_findings_stand_at_what_they_concern(workspace: Path) -> None:
     assert faults == {"std_msgs/msg/String is not std_msgs/msg/Int32"}
     drawn = graph(workspace, "--format", "mermaid")[1]
     assert "--x|" in drawn
-    assert re.search(r"class t\d(?:,t\d)* error", drawn)
+    assert re.search(r"t\d.*:::error$", drawn, re.MULTILINE)
     assert "arrowhead=tee" in graph(workspace, "--format", "dot")[1]
     page = graph(workspace, "--format", "html")[1]
     assert 'class="arrow broken"' in page
@@ -244,7 +300,7 @@ def test_the_text_says_what_is_not_certain(workspace: Path) -> None:
         "Node(package='tf2_ros', executable='static_transform_publisher', namespace='n',"
         " remappings=[('/tf_static', 'tf_static')], arguments=['0', '0', '1', '0', '0', '0', 'map', 'odom'])",
     )
-    _, text, _ = graph(workspace)
+    _, text, _ = graph(workspace, "--verbose")
     for words in (
         "(does not connect: volatile is offered, transient local is asked for)",
         "depth 1, transient local]",
@@ -285,18 +341,19 @@ def test_groups_and_dashes(workspace: Path) -> None:
         workspace,
         "Node(package='demo', executable='talker', namespace='left',"
         " condition=IfCondition(os.environ.get('X', '')))",
-        "Node(package='demo', executable='talker', parameters=[{'topic': 'x'}])",
+        "Node(package='demo', executable='talker', name='other', namespace='left',"
+        " remappings=[('answer', 'chatter')])",
         "Node(package='turtlesim', executable='turtlesim_node', parameters=[{'a': [1.5, 2.0], 'b': float('inf')}])",
         "Node(package='demo', executable='pair', condition=IfCondition('false'))",
         _CONTAINER,
     )
     drawn = shown(workspace, "--format", "mermaid")
-    assert 'subgraph s0["/left"]' in drawn
+    assert 'subgraph s1["/left"]' in drawn
     assert "-.->" in drawn
     dot = shown(workspace, "--format", "dot")
-    assert 'subgraph cluster_0 { label="/left";' in dot
-    assert "style=dashed" in dot
-    assert '"rounded,dashed"' in dot
+    assert 'subgraph cluster_s1 { label="/left";' in dot
+    assert re.search(r"n\d -> t\d \[style=dashed\];", dot)
+    assert "shape=box, style=dashed" in dot
     page = shown(workspace, "--format", "html")
     assert "item node  dashed" in page
     text = shown(workspace)
@@ -351,7 +408,9 @@ def test_an_end_lists_its_first_partners(workspace: Path) -> None:
 def test_a_large_graph_fits_a_page(workspace: Path) -> None:
     """Of many topics, the first ones are drawn."""
     rows = "\n".join(
-        f"        self.create_publisher(String, 'topic_{number}', 10)" for number in range(400)
+        f"        self.create_publisher(String, 'topic_{number}', 10)\n"
+        f"        self.create_subscription(String, 'topic_{number}', print, 10)"
+        for number in range(400)
     )
     code = TALKER.replace(
         "        self.create_subscription", f"{rows}\n        self.create_subscription"

@@ -42,6 +42,7 @@ UNUSED = {
     "pebble",
     "rich.progress",
     "rich.table",
+    "grader.ros.recording",
     "sqlite3",
     "tempfile",
     "yaml",

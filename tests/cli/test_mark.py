@@ -9,7 +9,15 @@ from typing import Any
 import pytest
 
 from grader.report.formats import Format
-from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, urdf
+from tests.classroom.gradebooks import (
+    ENVIRONMENT,
+    HOSTILE,
+    batch,
+    grader,
+    lab_text,
+    urdf,
+    write_submission,
+)
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
@@ -112,3 +120,18 @@ def test_no_report_names_an_account(top: Path) -> None:
     assert "Marked manually: fine." in (top / "out/anna.md").read_text(encoding="utf-8")
     assert "Marked by Kim." in (top / "out/emil.md").read_text(encoding="utf-8")
     assert sorted(path.name for path in (top / "book/marks").iterdir()) == ["jdoe47.csv", "kim.csv"]
+
+
+@pytest.mark.slow
+def test_the_id_of_a_university_is_no_changed_id_of_another_student(tmp_path: Path) -> None:
+    """0003 is Gina's, though Carol's id in Canvas is 3; 09 may be 9, and is refused."""
+    for key in ("carol", "gina"):
+        write_submission(tmp_path / "class" / key)
+    head = "Student,ID,SIS User ID,SIS Login ID,Section\n"
+    rows = '"Ek, Carol",3,0007,carol,A\n"Ray, Gina",9,0003,gina,A\n'
+    (tmp_path / "roster.csv").write_text(head + rows)
+    (tmp_path / "small.toml").write_text(lab_text())
+    assert batch(tmp_path).returncode == 0
+    book = ("--gradebook", tmp_path / "book")
+    assert grader("mark", "0003", "grade", "1", *book).stdout.startswith("Ray, Gina (9): ")
+    assert "'09' may be '9'" in grader("mark", "09", "grade", "1", *book).stderr

@@ -16,6 +16,7 @@ import grader.lab.grading.subjects
 import grader.lab.hints.hinting
 import grader.workspace.opening.opening
 from grader.app.cli import app, ending
+from grader.base import processor_time
 from grader.base.errors import OutOfTime
 from tests.command_line import ROOT, run
 
@@ -118,6 +119,18 @@ def test_limits_end_with_the_command() -> None:
     before = all_limits()
     assert run(("inspect", URDF)).returncode == 0
     assert all_limits() == before
+
+
+def test_a_process_that_has_worked_long_is_not_ended_early(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The system counts its own ticks for the end, which may be some per cent more than what the process has used."""
+    import resource
+
+    ends = []
+    monkeypatch.setattr("time.process_time", lambda: 10_000.0)
+    monkeypatch.setattr(resource, "setrlimit", lambda _kind, limits: ends.append(limits[0]))
+    processor_time.limit_processor_time(1)
+    processor_time.lift_processor_time()
+    assert ends[0] > 11_000
 
 
 @pytest.mark.exhaustive

@@ -81,6 +81,32 @@ def test_a_class_is_marked_by_a_sheet(tmp_path: Path) -> None:
     assert sheet_of(book) == []
 
 
+@pytest.mark.slow
+def test_a_student_without_a_robot_and_answers_is_one_row(tmp_path: Path) -> None:
+    """Its points are the grade; a sheet of one criterion or without names has all rows."""
+    for key in ("u1", "u2", "u3"):
+        write_submission(tmp_path / "class" / key, answer=key)
+    for name in ("u1/robot.urdf", "u1/answers.md", "u1/screen.png", "u3/robot.urdf"):
+        (tmp_path / "class" / name).unlink()
+    (tmp_path / "class/u1/all.pdf").write_bytes(b"%PDF-1.4\n")
+    (tmp_path / "roster.csv").write_text("id,name\nu1,Ada\nu2,Bo\nu3,Cy\n")
+    (tmp_path / "small.toml").write_text(lab_text())
+    assert batch(tmp_path).returncode == 0
+    book = tmp_path / "book"
+    *others, row = sheet_of(book)
+    assert {other["students"] for other in others} == {"u2", "u3"}
+    assert (row["criterion"], row["students"]) == ("grade", "u1")
+    assert "u1" in {other["students"] for other in sheet_of(book, "--criterion", "essay")}
+    assert len(sheet_of(book, "--anonymous")) > len(others) + 1
+    file = tmp_path / "sheet.csv"
+    file.write_text("criterion,answer,points,students\ngrade,,3,u9\n")
+    assert "u9" in refusal(grader("mark", "--import", file, "--gradebook", book))
+    file.write_text("criterion,answer,points,students\ngrade,,3,u1\n")
+    done = grader("mark", "--import", file, "--gradebook", book)
+    assert done.stdout == f"{file}: 1 recorded, 0 the same as before\n"
+    assert sheet_of(book) == others
+
+
 def test_the_sheet_has_what_there_is_to_read(book: Path) -> None:
     """The answer and its file, pictures, and who has it; no cell is a formula, and marked items are missing."""
     first, formula, *pictures = sheet_of(book)

@@ -45,6 +45,8 @@ def test_a_grade_is_what_is_published(book: Path) -> None:
     data = as_json("class", "stats", "--gradebook", book)
     found = data["statistics"]
     totals = {one["id"]: one["grade"] for one in data["students"]}
+    pending = {row["id"]: row["pending"] for row in found["criteria"]}
+    assert (pending["essay"], pending["picture"]) == (0, 1)  # ben's total is final
     assert totals == {"anna": 7.8, "ben": 11, "cleo": None, "dora": 1, "emil": None, "visitor": 6}
     assert found["grades"] == {"students": 3, "mean": 6.6, "median": 7.8}
     assert (found["late"], found["open"], found["tenths"]) == (1, 1, [1, 0, 0, 0, 0, 0, 0, 1, 0, 1])

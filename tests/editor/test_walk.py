@@ -108,8 +108,8 @@ async def _problems(one: Editor, document: lsp.TextDocumentIdentifier, at: lsp.P
 
 async def _complete(one: Editor, document: lsp.TextDocumentIdentifier, at: lsp.Position) -> str:
     items = await one.client.text_document_completion_async(lsp.CompletionParams(document, at))
-    assert isinstance(items, list | tuple)
-    return ", ".join(item.label for item in items)
+    assert isinstance(items, lsp.CompletionList)
+    return ", ".join(item.label for item in items.items)
 
 
 async def _hover(one: Editor, document: lsp.TextDocumentIdentifier, at: lsp.Position) -> str:

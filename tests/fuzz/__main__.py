@@ -25,6 +25,7 @@ from tests.samples import ROOT
 # With counters of coverage, and on a busy machine, an input takes longer: those that took long are run once more without.
 _LIMITS = ("-timeout=60", "-rss_limit_mb=512", "-print_final_stats=1", "-close_fd_mask=1")
 _STATE = re.compile(r"#(\d+)\s+(\w+)\s+cov: (\d+) ft: (\d+)")
+_COUNT, _COUNTED = 20_000_000, 0.3  # steps of an empty loop, and the seconds that they take
 _MOST_ENDS = 5  # findings after which libFuzzer ends, of one harness
 
 
@@ -109,14 +110,18 @@ def is_too_slow(name: str, path: Path) -> bool:
 
 
 def run_once(name: str, path: Path) -> float:
-    """Run one input without atheris; return the seconds of processor time."""
+    """Run one input without atheris; return the seconds of processor time, on a slow machine as on one that counts to `_COUNT` in `_COUNTED` seconds."""
     with TemporaryDirectory() as folder:
         GUARD.folder = tempfile.tempdir = folder
         for data in HARNESSES[name].inputs(name)[:1]:  # imports
             HARNESSES[name].run(data)
         start = time.process_time()
         HARNESSES[name].run(path.read_bytes())
-        return time.process_time() - start
+        spent = time.process_time() - start
+    start = time.process_time()
+    for _ in range(_COUNT):
+        pass
+    return spent * min(1.0, _COUNTED / (time.process_time() - start))
 
 
 def _described(folder: Path) -> Iterator[str]:

@@ -4,7 +4,16 @@ import tomllib
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from tests.fuzz import classes, documents, meshes, packages, robots, seeds, submissions
+from tests.fuzz import (
+    classes,
+    documents,
+    meshes,
+    packages,
+    recordings,
+    robots,
+    seeds,
+    submissions,
+)
 from tests.fuzz.harness import FOLDER, Harness
 
 _WORDS: dict[str, list[str]] = tomllib.loads((FOLDER / "words.toml").read_text())
@@ -83,6 +92,10 @@ HARNESSES: dict[str, Harness] = {
             run, f"{'xml ' if ending == 'dae' else ''}mesh", 2048, partial(meshes.seeds, ending)
         )
         for ending, run in meshes.MESHES.items()
+    },
+    **{
+        f"recording-{ending}": _row(run, "recording", 16_384, partial(recordings.seeds, ending))
+        for ending, run in recordings.RECORDINGS.items()
     },
     "archive": _row(documents.archive, "archive", 4096, documents.archives),
     "class-zip": _row(documents.class_zip, "class-zip", 4096, documents.classes),

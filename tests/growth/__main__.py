@@ -34,9 +34,9 @@ METHODS = {
 
 # Patterns that may be slow, by their module and how they begin: why their texts are never long.
 BOUNDED = {
-    ("app.editor.completions", ""): "_MAX_BEFORE letters before the cursor",
     ("base.toml_file", r"\{[^}]*"): "_MAX_WIDTH letters on each side of a mistake",
     ("report.pages.shell", ""): "scripts and styles of our own",
+    ("report.written_files", ""): "_MAX_START bytes",
     ("ros.installation.manifest_conditions", r"(\$[A-Z"): "_MAX_LENGTH",
     ("ros.package.trees", ""): "paths of entries in a rubric",
     ("ros.python.parse", r"\b[rR]?[fF][rR]?"): "_MAX_SEARCHED characters of a line",
@@ -92,7 +92,9 @@ def recorded() -> dict[_Key, _Recorded]:
         setattr(re, name, recorder(name))
     try:
         import grader
+        from grader.base import patterns
 
+        patterns.on_use = recorder("compile")  # before the modules take it
         for module in pkgutil.walk_packages(grader.__path__, "grader."):
             if "on_gradescope" not in module.name and not module.name.endswith("__main__"):
                 importlib.import_module(module.name)

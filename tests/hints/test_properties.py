@@ -11,7 +11,7 @@ from grader.lab.grading.report import Result
 from grader.lab.submission.edited import edited_files
 from grader.lab.submission.opening import read_submission
 from tests.examples import examples
-from tests.hints.trials import BASES, applied, graded, search_for, with_edits
+from tests.hints.trials import BASES, applied, graded, hints_for, search_for, with_edits
 from tests.rewriting import parse, rewritings
 
 REFERENCE = parse(BASES["reference"].text.encode())
@@ -66,3 +66,19 @@ def test_hints_gain_what_they_promise_and_lose_nothing(data: bytes) -> None:
         for name, points in gains.items():
             risen = after[name].points - without[name].points
             assert risen == points or (after[name].carried and risen > points)
+
+
+def test_a_hint_does_not_wait_for_that_of_a_dropped_visual() -> None:
+    """What is known of a visual that ROS 2 drops counts in a trial as in the report."""
+    base = BASES["reference"]
+    assert base.text.count('<cylinder radius="0.1" length="0.05"/>') == 3
+    mistakes = (("0.15 0 0.225", "0.15 0 0.2"), (' length="0.05"', ""))
+    text = base.text
+    for right, wrong in mistakes:
+        text = wrong.join(text.rsplit(right, 1))
+    hints = hints_for(base.changed(text))
+    assert hints.is_full
+    of_lidar = [
+        hint for hint in hints.found if hint.gains.keys() == {"lidar-frame", "lidar-on-top"}
+    ]
+    assert [(hint.after, len(hint.edits)) for hint in of_lidar] == [((), 1)]

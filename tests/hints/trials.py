@@ -72,7 +72,7 @@ def search_for(
         Trials(rubric, submission, judged_results(report)),
         reference_draft(rubric.id),
         lambda _: reference(rubric).package,
-        slips=hints_on_slips(report.meant),
+        slips=hints_on_slips(report),
     )
     return search.run() if _lost(results) else search
 

@@ -144,6 +144,26 @@ def test_what_is_installed(text: str, installed: set[str]) -> None:
                 "find_package(hardware_interfce)"
             ),
         ),
+        (
+            (
+                "find_package(rclcpp)\nfind_package(bot_interfaces)\nadd_library(a src/node.cpp)\n"
+                "ament_target_dependencies(a bot_interfaces geometry_msgs rclcpp_action)"
+            ),
+            (
+                "ament_target_dependencies() names the package 'rclcpp_action', without "
+                "find_package(rclcpp_action)"
+            ),
+        ),
+        (
+            (
+                "find_package(rclcpp)\nadd_library(a src/node.cpp)\n"
+                "target_link_libraries(a rclcpp::rclcpp fmt::fmt rclcpp_action::rclcpp_action)"
+            ),
+            (
+                "target_link_libraries() names the package 'rclcpp_action', without "
+                "find_package(rclcpp_action)"
+            ),
+        ),
         ("find_package(rclcp REQUIRED)", "there is no package 'rclcp'"),
         (
             "rosidl_generate_interfaces(bot msg/Reading.msg)",

@@ -17,6 +17,7 @@ from grader.ros.known.releases import RELEASES
 from grader.ros.known.ros_machine import RosMachine, ros_machine
 from grader.ros.known.rosdep_words import RosdepWords, rosdep_words
 from grader.ros.known.shared_names import SharedNames, shared_names
+from grader.ros.known.typed_places import TypedPlaces, typed_places
 from grader.ros.known.typed_rows import read_row, read_typed
 
 # The files of what belongs to no package; releases.py reads the one of releases, and docs/make.py
@@ -27,6 +28,7 @@ _OTHERS: Mapping[str, tuple[Callable[..., Any], Callable[[], Any]]] = {
     "machine": (RosMachine, ros_machine),
     "rosdep": (RosdepWords, rosdep_words),
     "shared_names": (SharedNames, shared_names),
+    "typed_places": (TypedPlaces, typed_places),
 }
 
 

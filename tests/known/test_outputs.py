@@ -27,14 +27,15 @@ def _text_of(said: Mapping[str, Any]) -> str:
 
 @pytest.mark.parametrize("said", _SAID, ids=lambda said: said["output"])
 def test_a_row_knows_the_text_of_its_source(said: Mapping[str, Any]) -> None:
-    """It is the first that does, behind a prefix as well, and finds the names in it."""
+    """It does so behind a prefix as well, and finds the names in it."""
     text = _text_of(said)
     for log in (text, f"[ERROR] [17.5] [node]: {text}"):
         [message] = read_messages(log.encode())
-        row = next(row for row in known_rows() if row.compiled.search(message.text))
-        match = row.compiled.search(message.text)
+        rows = {row.name: row.compiled.search(message.text) for row in known_rows()}
+        match = rows[said["output"]]
         assert match is not None
-        assert (row.name, match.groupdict()) == (said["output"], said["names"])
+        names = {name: value or "" for name, value in match.groupdict().items()}
+        assert names == said["names"]
 
 
 def test_each_row_has_a_text() -> None:
@@ -53,10 +54,11 @@ def test_a_row_names_what_exists(row: OutputRow) -> None:
     assert {*row.within} <= groups
     for text in (row.otherwise, row.key):
         fields = {field for _, field, _, _ in string.Formatter().parse(text) if field is not None}
-        assert fields <= groups | {"others", "reason"}
+        assert fields <= groups | {"logger", "reason"}
     for source in row.source.split("; "):
         assert _SOURCE.match(source), source
     assert row.sentence.endswith(".")
-    assert bool(row.key) == (row.place == "parameter")
-    # What has no name must be of a program that the workspace starts, or follow from another message.
-    assert row.within or row.processes or row.place or row.follows
+    assert bool(row.key) == (row.place in ("parameter", "text"))
+    assert re.search(row.pattern, row.example)
+    # Codes of problems explain only what has names, or is of a program that the workspace starts.
+    assert row.within or row.processes or row.place or row.follows or {*row.rules} <= RULES.keys()

@@ -187,7 +187,7 @@ def test_texts() -> None:
         "g": "z",
     }
     assert (
-        values(given(NAMED.format("ParameterFile([str(CONFIG / 'texts.yaml')])")))["a"]
+        values(given(NAMED.format("ParameterFile([os.fspath(CONFIG / 'texts.yaml')])")))["a"]
         == "$(var name)"
     )
 

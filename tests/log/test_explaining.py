@@ -5,61 +5,11 @@ from collections.abc import Mapping
 import pytest
 
 from grader.base.errors import NotDecided
-from grader.files.tree import make_tree, overlaid
-from grader.ros.api import Read
-from grader.workspace.api import LogAnswer, explain_log, read_workspace
 from grader.workspace.log import explaining
-
-_SETUP = """
-from setuptools import setup
-setup(
-    name='cell',
-    packages=['cell'],
-    data_files=[('share/cell', ['package.xml']), ('share/cell/launch', ['launch/c.launch.py'])],
-    entry_points={'console_scripts': ['mover = cell.mover:main']},
-)
-"""
-_LAUNCH = """
-from launch import LaunchDescription
-from launch.substitutions import Command
-from launch_ros.actions import Node
-
-def generate_launch_description():
-    return LaunchDescription([
-        NODES
-    ])
-"""
-_CODE = "def main():\n    print(missing)\n"
-
-
-def _workspace(
-    files: Mapping[str, str] = {}, nodes: str = "", name: str = "cell"
-) -> dict[str, str]:
-    """Return the files of a package in src/, with a launch file that starts nodes."""
-    manifest = f"<package format='3'><name>{name}</name><version>1.0.0</version><description/>"
-    manifest += "<maintainer email='a@b.c'>A</maintainer><license>MIT</license>"
-    manifest += "<export><build_type>ament_python</build_type></export></package>"
-    package = {
-        "package.xml": manifest,
-        "setup.py": _SETUP.replace("cell", name),
-        "setup.cfg": f"[install]\ninstall_scripts=$base/lib/{name}\n",
-        f"resource/{name}": "",
-        f"{name}/__init__.py": "",
-        f"{name}/mover.py": _CODE,
-        "launch/c.launch.py": _LAUNCH.replace("NODES", nodes),
-        **files,
-    }
-    return {f"src/{name}/{path}": text for path, text in package.items()}
-
-
-def _explained(files: Mapping[str, str], log: str) -> list[LogAnswer]:
-    data = {path: text.encode() for path, text in files.items()}
-    opened = read_workspace(overlaid(make_tree("ws", (), ()), data), "ws", 1 << 20, {})
-    problems = opened.package_problems()
-    for robot in opened.robots:
-        if isinstance(robot, Read):
-            problems += opened.find_problems(robot)
-    return [*explain_log(opened, problems, log.encode())]
+from tests.log.log_workspaces import LAUNCH as _LAUNCH
+from tests.log.log_workspaces import SETUP as _SETUP
+from tests.log.log_workspaces import explain as _explained
+from tests.log.log_workspaces import make_workspace as _workspace
 
 
 def _places(files: Mapping[str, str], log: str) -> list[str]:
@@ -114,14 +64,12 @@ _WITH_ROBOT = {
     "setup.py": _SETUP.replace("[('", "[('share/cell/urdf', ['urdf/arm.urdf.xacro']), ('", 1),
 }
 _MOVER = "Node(package='cell', executable='moover'),"
+_STARTED = _MOVER.replace("moover", "mover")
 _BRIDGE = "Node(package='joint_state_publisher', executable='joint_state_publisher'),"
 _DECLARING = _workspace()["src/cell/package.xml"].replace(
     "<export>", "<exec_depend>joint_state_publisher</exec_depend><export>"
 )
 _IMPORTING = {
-    "package.xml": _workspace()["src/cell/package.xml"]
-    .replace("<description/>", "<description>A.</description>")
-    .replace("a@b.c", "a@example.com"),
     "cell/mover.py": "import cv_bridge\nimport tf_transformations\n\ndef main(): ...\n",
 }
 _COMMAND = "Command(['xacro ', 'arm.urdf.xacro']),"
@@ -286,12 +234,15 @@ _TARGETS = "install(TARGETS mover DESTINATION lib/${PROJECT_NAME})"
             id="spaced path",
         ),
         pytest.param(
-            _workspace({"setup.cfg": ""}), _NO_LIBEXEC, "src/cell/setup.py:1", id="setup.cfg"
+            _workspace({"setup.cfg": ""}, _STARTED),
+            _NO_LIBEXEC,
+            "src/cell/launch/c.launch.py:8",
+            id="setup.cfg",
         ),
         pytest.param(
-            _workspace({**_OF_CMAKE, "CMakeLists.txt": _CMAKE.replace("INSTALL", "")}),
+            _workspace({**_OF_CMAKE, "CMakeLists.txt": _CMAKE.replace("INSTALL", "")}, _STARTED),
             _NO_LIBEXEC,
-            "src/cell/CMakeLists.txt:1",
+            "src/cell/launch/c.launch.py:8",
             id="install",
         ),
         pytest.param(
@@ -361,10 +312,12 @@ def test_the_files_explain_a_message(files: Mapping[str, str], log: str, place: 
     ],
 )
 def test_what_the_files_do_not_prove_is_not_said(files: Mapping[str, str], log: str) -> None:
-    """The message has an answer without a place: that nothing is said."""
-    [answer, *_] = _explained(files, log)
-    assert (answer.location, answer.output) == (None, "")
-    assert answer.message == "no explanation is known"
+    """The message is answered in general, or with the places of its names, and no cause is said."""
+    answers = _explained(files, log)
+    assert answers
+    for answer in answers:
+        assert (answer.location is None) == (answer.relation == "explains")
+        assert answer.message
 
 
 def test_what_keeps_a_node_from_publishing_a_frame_explains_it() -> None:
@@ -415,8 +368,8 @@ def test_without_a_budget_findings_are_asked(monkeypatch: pytest.MonkeyPatch) ->
     def spent(*_: object) -> None:
         raise NotDecided("too much")
 
-    monkeypatch.setattr(explaining, "placed_answers", spent)
-    [answer] = _explained(_workspace(), _NOT_FOUND.replace("NAME", "cell"))
+    monkeypatch.setattr(explaining, "search_place", spent)
+    answer, *_ = _explained(_workspace(), _NOT_FOUND.replace("NAME", "cell"))
     assert answer.location is None
 
 

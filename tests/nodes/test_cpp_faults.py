@@ -204,10 +204,10 @@ def _registered(text: str, command: str = _COMPONENT) -> list[tuple[str, bool]]:
 
 
 def test_components_that_no_source_registers() -> None:
-    """The program of a component certainly stops; a container may never load it."""
+    """The program of a component stops, and a container cannot load it."""
     message = "no source registers the component 'hub::Talker'"
     assert _registered("int a;") == [(message, True)]
-    assert _registered("int a;", _OTHER) == [(message, False)]
+    assert _registered("int a;", _OTHER) == [(message, True)]
     meant = f"{message}; did you mean 'hub::Talkr'?"
     assert _registered(_REGISTERED.format("hub::Talkr")) == [(meant, True)]
     assert _registered(f"// {_REGISTERED.format('hub::Talker')}") == [(message, True)]
@@ -251,16 +251,31 @@ _SERVE = 'server_ = {}create_server<a::action::B>(this, "a", b, c, d);'
     [
         ("rclcpp_action::", "void run(Handle goal) { goal->canceled(result); }", False),
         ("rclcpp_action::", "void run(Handle goal) { goal->succeed(result); }", True),
-        ("rclcpp_action::", "void run(Handle goal) { goal->abort(result); }", True),
+        ("rclcpp_action::", "void run(Handle goal) { goal->abort(result); }", False),
         ("other::", "void run(Handle goal) {}", True),
     ],
 )
 def test_goals_without_a_state(library: str, members: str, *, is_ended: bool) -> None:
-    """A goal that nothing ends is cancelled with its handle."""
+    """A goal that nothing ends, or that never succeeds, is cancelled with its handle."""
     faults = [
         (fault.rule, fault.is_certain) for fault in faults_of(_SERVE.format(library), members)
     ]
     assert faults == ([] if is_ended else [("goal-state", False)])
+
+
+@pytest.mark.parametrize(
+    ("asks", "is_read"),
+    [("goal->is_canceling()", True), ("goal->is_active()", False)],
+)
+def test_accepted_cancel_requests(asks: str, *, is_read: bool) -> None:
+    """A server that accepts cancel requests asks for them while it executes a goal."""
+    members = f"""
+    Answer cancel() {{ return rclcpp_action::CancelResponse::ACCEPT; }}
+    void run(Handle goal) {{ if ({asks}) {{ goal->canceled(); }} goal->succeed(); }}
+    """
+    messages = [fault.message for fault in faults_of(_SERVE.format("rclcpp_action::"), members)]
+    unread = "cancel requests are accepted but ignored: check is_canceling()"
+    assert messages == ([] if is_read else [unread])
 
 
 @pytest.mark.parametrize(
@@ -313,3 +328,38 @@ def test_publishers_that_stay_inactive(
         (fault.rule, fault.is_certain) for fault in faults if fault.rule == "publisher-activated"
     ]
     assert rules == ([] if is_active else [("publisher-activated", True)])
+
+
+_ACTION = """
+#include <rclcpp/rclcpp.hpp>
+class Talker : public rclcpp::Node {{
+public:
+  Talker() : Node("talker") {{
+    server_ = rclcpp_action::create_server<a::action::B>(this, "a", goal, cancel,
+      [this](const std::shared_ptr<Handle> handle) {{ {} }});
+  }}
+  void accept(const std::shared_ptr<Handle> handle) {{ execute(handle); }}
+  void execute(const std::shared_ptr<Handle> handle) {{
+    rclcpp::Rate rate(2.0);
+    for (int i = 0; i < 9; ++i) {{ handle->publish_feedback(i); rate.sleep(); }}
+    handle->succeed(result);
+  }}
+  void other() {{ other(); }}
+}};
+""" + _SPIN  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("accepted", "is_said"),
+    [
+        ("accept(handle);", True),
+        ("this->execute(handle);", True),
+        ("std::thread([this, handle]() { execute(handle); }).detach();", False),
+        ("goals_.push_back(handle);", False),
+    ],
+)
+def test_a_goal_that_is_executed_where_it_is_accepted(accepted: str, is_said: bool) -> None:
+    """The executor calls nothing else until the goal has ended, unless a thread executes it."""
+    text = _ACTION.replace("{}", accepted).replace("{{", "{").replace("}}", "}")
+    rules = [fault.rule for fault in nodes_of(text).faults if fault.rule == "callback-sleep"]
+    assert rules == (["callback-sleep"] if is_said else [])

@@ -202,3 +202,39 @@ def test_the_code_of_a_base_class_makes_no_node() -> None:
     )
     [talker] = nodes_of(f"{_HEAD}{text}\n{_talker('')}\n{_SPIN}").nodes
     assert talker.class_name == "Talker"
+
+
+@pytest.mark.parametrize(
+    ("constructor", "member"),
+    [
+        ("", "diagnostic_updater::Updater updater_{this};"),
+        ("updater_ = std::make_unique<diagnostic_updater::Updater>(this);", "std::unique_ptr<diagnostic_updater::Updater> updater_;"),
+        ("diagnostic_updater::Updater updater_(this);", ""),
+    ],
+)  # fmt: skip
+def test_an_updater_of_diagnostics(constructor: str, member: str) -> None:
+    """It publishes for the node that it is given, has two parameters, and opens nothing else."""
+    arrow = "->" if "unique" in member else "."
+    add = f'updater_{arrow}add("a", this, &Talker::check);' if member else ""
+    initializer = ", updater_(this)" if "{" in member else ""
+    declared = member.replace("{this}", "")
+    text = (
+        f'{_HEAD}#include "diagnostic_updater/diagnostic_updater.hpp"\n'
+        f'class Talker : public rclcpp::Node {{ public: Talker() : Node("talker"){initializer} '
+        f"{{ {constructor} {add} }} {declared} }}; {_SPIN}"
+    )
+    [program] = nodes_of(text).programs
+    [node] = program.nodes
+    [end] = node.endpoints
+    assert (end.kind, end.name, node.doubts) == ("publisher", "/diagnostics", ())
+    assert [parameter.name for parameter in node.parameters] == [
+        "diagnostic_updater.period",
+        "diagnostic_updater.use_fqn",
+    ]
+
+
+def test_another_updater_leaves_the_node_open() -> None:
+    """A class of the same name may open anything."""
+    text = f"{_HEAD}{_talker('updater_.add(this);', 'own::Updater updater_;')} {_SPIN}"
+    [program] = nodes_of(text).programs
+    assert [doubt.reason for doubt in program.nodes[0].doubts] == ["add is given the node"]

@@ -78,6 +78,59 @@ def test_a_class_adds_what_its_base_declares_and_opens() -> None:
         assert node.doubts == ()
 
 
+TWO_PACKAGES = {
+    "app/package.xml": MANIFEST,
+    "app/setup.py": SETUP,
+    "app/lamp/__init__.py": "",
+    "app/lamp/app.py": APP.replace("lamp.base", "light.base"),
+    "base/package.xml": MANIFEST.replace("lamp", "light"),
+    "base/setup.py": SETUP.replace("lamp", "light"),
+    "base/light/__init__.py": "",
+    "base/light/base.py": BASE,
+}
+
+
+def test_a_base_may_be_in_another_package() -> None:
+    """The class of the base stays a node of its package alone."""
+    nodes = cart(TWO_PACKAGES).workspace.code.by_package
+    assert [node.class_name for node in nodes["light"].nodes] == ["light.base.Base"]
+    assert nodes["light"].faults == ()  # tick() is a method of the other package's class
+    [node] = nodes["lamp"].nodes
+    assert (node.name, node.doubts) == ("lamp", ())
+    assert [end.location.path for end in node.endpoints] == ["base/light/base.py"] * 2
+
+
+def test_what_a_base_opens_may_be_used_in_its_package() -> None:
+    """No module that has a base class of the node needs to use it."""
+    text = "def switch(node):\n    node.lights.publish(True)\n"
+    files = {**TWO_PACKAGES, "base/light/switch.py": text}
+    [node] = cart(files).workspace.code.by_package["lamp"].nodes
+    assert not any(end.is_unused for end in node.endpoints if end.kind == "publisher")
+
+
+def test_a_base_may_use_what_a_class_opens() -> None:
+    """The publisher of a class in one package is used by the base in another one."""
+    opens = "        self.own = self.create_publisher(Int8, 'own', 10)\n        self.declare_p"
+    app = TWO_PACKAGES["app/lamp/app.py"].replace("        self.declare_p", opens)
+    files = {
+        **TWO_PACKAGES,
+        "app/lamp/app.py": f"from std_msgs.msg import Int8\n{app}",
+        "base/light/base.py": BASE.replace("pass", "self.own.publish(message)"),
+    }
+    [node] = cart(files).workspace.code.by_package["lamp"].nodes
+    assert [end.is_unused for end in node.endpoints if end.name == "own"] == [False]
+
+
+@pytest.mark.parametrize("folder", ["app/base", "base"])
+def test_a_base_is_not_in_a_package_that_is_not_built(folder: str) -> None:
+    """One that is in another one, or that colcon ignores, gives a class nothing."""
+    files = {path.replace("base/", f"{folder}/", 1): text for path, text in TWO_PACKAGES.items()}
+    if folder == "base":
+        files["base/COLCON_IGNORE"] = ""
+    [node] = cart(files).workspace.code.by_package["lamp"].nodes or [None]
+    assert not node or not node.endpoints
+
+
 NAMES = [
     ("super().__init__('lamp')", "super().__init__(name='other')", "other"),
     ("super().__init__('lamp')", "Base.__init__(self, 'other')", "other"),

@@ -2,6 +2,7 @@
 
 import pytest
 
+from grader.base.reuse import Answers
 from grader.files.tree import make_tree, overlaid
 from grader.ros.nodes.node_facts import (
     Endpoint,
@@ -48,7 +49,7 @@ def nodes_of(text: str, **files: str) -> PackageNodes:
         make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()}
     )
     [package] = read_packages(tree, "urdf/hub.urdf")
-    return read_nodes(package)
+    return read_nodes(package, Answers(package))
 
 
 def node_of(*statements: str) -> NodeFacts:
@@ -117,6 +118,20 @@ def test_publishers_subscriptions_services_and_clients_are_known_as_far_as_they_
     assert (*endpoint[:3], tuple(endpoint.qos)) == expected
     assert (endpoint.location.path, endpoint.location.column) == ("src/hub/hub/talker.py", 9)
     assert endpoint.location.line == (_HEAD + _CLASS).count("\n") + 1
+
+
+@pytest.mark.parametrize(
+    ("statement", "durability"),
+    [("latch(qos)", None), ("other = qos", None), ("self.latch(qos)", "volatile")],
+)
+def test_a_quality_that_is_given_away_may_be_changed(
+    statement: str, durability: str | None
+) -> None:
+    """A function, or what has another name, may set its policies; methods of nodes set none."""
+    lines = ("qos = QoSProfile(depth=1)", statement, "self.create_publisher(Float32, 'a', qos)")
+    [endpoint] = node_of(*lines).endpoints
+    assert isinstance(endpoint, Endpoint)
+    assert endpoint.qos.durability == durability
 
 
 CONSTANTS = [
@@ -384,7 +399,10 @@ def test_a_script_that_cmake_installs_is_a_program(file: str, expected: list[str
         make_tree("work", (), ()), {f"src/hub/{path}": it.encode() for path, it in texts.items()}
     )
     [package] = read_packages(tree, "urdf/hub.urdf")
-    found = [(it.name, [node.name for node in it.nodes]) for it in read_nodes(package).programs]
+    found = [
+        (it.name, [node.name for node in it.nodes])
+        for it in read_nodes(package, Answers(package)).programs
+    ]
     assert found == ([(file, expected)] if expected else [])
 
 
@@ -403,7 +421,7 @@ def test_a_package_without_a_build_file_has_no_nodes() -> None:
         {"hub/package.xml": b"<package format='3'><name>hub</name></package>"},
     )
     [package] = read_packages(tree, "urdf/hub.urdf")
-    assert read_nodes(package) == PackageNodes((), (), ())
+    assert read_nodes(package, Answers(package)) == PackageNodes((), (), ())
 
 
 @pytest.mark.parametrize(
@@ -457,7 +475,7 @@ INCREASED = [
 def test_attributes_that_only_increase(body: str, messages: list[str]) -> None:
     """+= makes no attribute."""
     statements = "".join(f"        {line}\n" for line in body.splitlines())
-    text = f"from rclpy.node import Node\nclass Look(Node):\n    def __init__(self):\n        super().__init__('look')\n{statements}"
+    text = f"from rclpy.node import Node\nclass Look(Node):\n    def __init__(self):\n        super().__init__('look')\n{statements}Look()\n"
     assert [fault.message for fault in nodes_of(text).faults] == messages
 
 
@@ -513,3 +531,11 @@ def test_a_helper_may_make_the_node_whose_class_it_is_given(
         f"{_HEAD}{_CLASS}\n{helper}\n\ndef main():\n    rclpy.init()\n    run(Talker)\n"
     ).programs
     assert [node.name for node in program.nodes] == created
+
+
+def test_an_updater_of_diagnostics() -> None:
+    """It publishes for the node that it is given, and opens nothing else."""
+    text = _HEAD + "from diagnostic_updater import Updater\n" + _CLASS
+    [node] = nodes_of(f"{text}        updater = Updater(self)\n").nodes
+    assert [end.name for end in node.endpoints] == ["/diagnostics"]
+    assert node.doubts == ()

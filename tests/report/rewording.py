@@ -1,7 +1,7 @@
 """The same report with other text wherever a student's text may be."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from grader.base.source import Location, Source
 from grader.base.text import printable
@@ -15,7 +15,6 @@ from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Urdf
 Words = Callable[[], str]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
 class Reworded(Submission):
     """A submission whose files all have the same text."""
 

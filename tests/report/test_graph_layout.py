@@ -66,8 +66,12 @@ def transform(parent: str, child: str) -> GraphTransform:
 def test_transforms_are_a_tree() -> None:
     """Each is there once, also in a circle and below two parents."""
     rows = [transform("odom", "base"), transform("map", "odom"), transform("base", "a")]
-    tree = [(depth, each.child) for depth, each in transform_tree(rows)]
-    assert tree == [(0, "odom"), (1, "base"), (2, "a")]
+    assert list(transform_tree(rows)) == [
+        (0, "map", ""),
+        (1, "odom", "node"),
+        (2, "base", "node"),
+        (3, "a", "node"),
+    ]
     circle = [transform("a", "b"), transform("b", "a")]
-    assert [each.child for _, each in transform_tree(circle)] == ["b", "a"]
-    assert len([*transform_tree([*rows, transform("other", "base")])]) == 4
+    assert [frame for _, frame, _ in transform_tree(circle)] == ["a", "b", "a"]
+    assert len([*transform_tree([*rows, transform("other", "base")])]) == 6

@@ -262,11 +262,7 @@ def test_places_do_not_count_in_comparisons() -> None:
     )
     assert one is not None
     assert one == other != read_urdf(robot(links("a")).encode(), "a").robot
-    assert (one.joints, hash(one.joints), repr(one)) == (
-        other.joints,
-        hash(other.joints),
-        repr(other),
-    )
+    assert (one.joints, hash(one), repr(one)) == (other.joints, hash(other), repr(other))
     assert one.joints[0].origin == Origin() != Origin((1.0, 0.0, 0.0))
 
 

@@ -20,7 +20,7 @@ _ROBOT = """\
   <gazebo reference="base_link">
     <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
     <sensor name="imu" type="imu"><topic>imu</topic></sensor>
-    <sensor name="bumper" type="bump"><topic>bumped</topic></sensor>
+    <sensor name="bumper" type="custom"><topic>bumped</topic></sensor>
   </gazebo>
   <gazebo>
     <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">

@@ -13,6 +13,7 @@ from grader.files.tree import make_tree, overlaid
 from grader.ros.package.robot_file import Read
 from grader.workspace.opening.all_robots import read_workspace
 from tests.command_line import ROOT
+from tests.nodes.test_inherited_nodes import BASE, TWO_PACKAGES
 from tests.workspace.random_edits import Files, edited_files, edited_text, files_of
 
 pytestmark = pytest.mark.slow
@@ -99,3 +100,18 @@ def test_a_change_of_one_package_is_little_work() -> None:
         assert memory.made <= memory.asked / 5, path
         _found(files, memory)
         memory.forget_unused()
+
+
+def test_a_base_in_a_package_that_is_not_declared_is_asked_for_again() -> None:
+    """A change of the base class, or of its folder, changes the node of another package, whose files stay."""
+    memory = Memory(10_000)
+    for topic, folder in (("light", "base"), ("lamp", "base"), ("lamp", "bases")):
+        texts = {**TWO_PACKAGES, "base/light/base.py": BASE.replace("'light'", f"'{topic}'")}
+        files = {
+            path.replace("base/", f"{folder}/", 1): text.encode() for path, text in texts.items()
+        }
+        opened = read_workspace(overlaid(_EMPTY, files), "ws", URDF_LIMIT, {}, memory)
+        code = opened.workspace.code.by_package
+        ends = code["lamp"].nodes[0].endpoints
+        assert (topic, f"{folder}/light/base.py") in [(end.name, end.location.path) for end in ends]
+        assert code["light"].nodes[0].location.path == f"{folder}/light/base.py"

@@ -444,6 +444,31 @@ def test_transforms_and_processes() -> None:
     assert graph.arguments == (("gui", "true"),)
 
 
+@pytest.mark.parametrize(
+    ("words", "topics"),
+    [
+        ("'-o', 'run', '/scan', 'odom'", ["/scan", "/odom"]),
+        ("'--topics', '/scan', '--storage', 'mcap', '-a'", ["/scan"]),
+        ("'-a', '--output', '/tmp/run'", None),
+    ],
+)
+def test_a_command_that_records_is_a_node(words: str, topics: list[str] | None) -> None:
+    """It subscribes to the topics that it names; one that names none is a process."""
+    graph = graph_of_actions(f"ExecuteProcess(cmd=['ros2', 'bag', 'record', {words}])")
+    recorders = [node for node in graph.nodes if node.name == "/rosbag2_recorder"]
+    recorded = [[end.name for end in node.ends] for node in recorders]
+    assert recorded == ([] if topics is None else [topics])
+    assert len(graph.processes) == (1 if topics is None else 0)
+
+
+def test_a_command_under_a_condition() -> None:
+    """One that does not start is no node, and one that may start is one in doubt."""
+    process = "ExecuteProcess(cmd=['ros2', 'bag', 'record', '/scan'], condition=IfCondition({}))"
+    assert graph_of_actions(process.format("'false'")).nodes == ()
+    [recorder] = graph_of_actions(process.format("EnvironmentVariable('RECORD')")).nodes
+    assert recorder.doubt
+
+
 def test_a_launch_file_that_cannot_be_read_says_why() -> None:
     """Its graph is empty."""
     path = "demo/launch/demo.launch.py"

@@ -43,7 +43,7 @@ def opened(executable: str, *edits: Edit) -> list[tuple[str, str]]:
     workspace = cart(edited(*edits)).workspace
     return [
         (found.endpoint.kind, found.name)
-        for _, node in workspace.launches.nodes
+        for node in workspace.launches.nodes
         if node.executable == executable and node.when
         for found in opened_by(workspace, node)
     ]

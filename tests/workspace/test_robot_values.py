@@ -307,7 +307,7 @@ WRONG: list[tuple[str, list[Edit]]] = [
     ),
     (
         (
-            "REF019 config/controllers.yaml:6 wheels publishes 'laser' in 'odom', but the joint "
+            "REF019 config/controllers.yaml:15 wheels publishes 'laser' in 'odom', but the joint "
             "'laser_joint' of the robot places it in 'base_link': a frame has one parent"
         ),
         [(CONTROLLERS, "base_frame_id: base_link", "base_frame_id: laser")],

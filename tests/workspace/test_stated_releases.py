@@ -12,6 +12,7 @@ from grader.lab.submission.submission import Lab
 from grader.ros.known.releases import RELEASES, Release, StatedReleases, other_name
 from grader.workspace.model.stated_releases import stated_releases
 from grader.workspace.rules.reading import read_agreement
+from tests.command_line import run
 
 pytestmark = pytest.mark.slow
 
@@ -62,6 +63,8 @@ _STATED = [
     ("README.md", "Made with ROS2 Jazzy. For ROS2 Humble, see the **humble** branch.", "jazzy"),
     ("README.md", "An iron robot with a rolling base on Ubuntu 22.04", ""),
     ("README.md", "See https://example.org/tree/humble/docs", ""),
+    ("README.md", "For ROS 2 Lyrical.\n\n- 2021-06: first cart (ROS2 Foxy)", "lyrical"),
+    ("README.md", "* 2026-06: ROS 2 Jazzy\n* 2021: ROS 2 Foxy", "jazzy"),
     ("src/nav/README.md", "For ROS 2 Humble.", "humble"),
     ("scripts/run.sh", "source /opt/ros/humble/setup.bash", "humble"),
     ("src/nav/nav/node.py", "# ROS 2 Humble", ""),
@@ -149,3 +152,24 @@ def test_names_are_compared_with_the_release_of_a_rubric(
     submission = make_submission(tree, "ws", Lab("robot.urdf", distro=distro))
     found = read_agreement(submission.workspace).mismatches
     assert sum(it.is_certain for it in found) == wrong
+
+
+@pytest.mark.parametrize(("release", "is_known"), [("foxy", True), ("humble", False)])
+def test_nodes_of_a_release_have_its_attributes(
+    release: str, tmp_path: Path, *, is_known: bool
+) -> None:
+    """set_parameters_callback was removed in Galactic."""
+    texts = {
+        "cart/package.xml": "<package format='3'><name>cart</name></package>",
+        "cart/CMakeLists.txt": "project(cart)\nfind_package(ament_cmake)\n"
+        "install(PROGRAMS tuner.py DESTINATION lib/cart)\nament_package()\n",
+        "cart/tuner.py": "#!/usr/bin/env python3\nimport rclpy\nfrom rclpy.node import Node\n\n\n"
+        "class Tuner(Node):\n    def __init__(self):\n        super().__init__('tuner')\n"
+        "        self.set_parameters_callback(print)\n\n\nrclpy.init()\nrclpy.spin(Tuner())\n",
+        "README.md": f"For ROS 2 {release.title()}.",
+    }
+    for path, text in texts.items():
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        (tmp_path / path).write_text(text)
+    said = run(("inspect", tmp_path, "--format", "concise")).stdout.decode()
+    assert ("Tuner has no attribute set_parameters_callback" in said) is not is_known

@@ -1,6 +1,8 @@
 """What `grader inspect` says of whole workspaces as people publish them: several packages, robots and names."""
 
+import json
 from collections.abc import Mapping
+from pathlib import Path
 
 import pytest
 
@@ -8,6 +10,7 @@ from grader.files.tree import make_tree, overlaid
 from grader.lab.submission.opening import make_submission
 from grader.lab.submission.submission import Lab, Submission
 from grader.workspace.rules.reading import read_agreement
+from tests.command_line import run
 
 pytestmark = pytest.mark.slow
 
@@ -190,3 +193,40 @@ def test_a_file_of_macros_is_the_robot_only_if_there_is_no_other() -> None:
     found = workspace(package("arm", files={"a/macros.xacro": macros, "b/robot.xacro": robot}))
     assert found.path == "arm/b/robot.xacro"
     assert [it.is_part for it in found.other_candidates] == [True]
+
+
+_LOADS = _RUNS_XACRO.replace('Command(["xacro ", urdf])', "open(urdf).read()").replace(
+    "from launch.substitutions import Command\n", ""
+)
+
+
+@pytest.mark.parametrize(
+    ("launch", "expected"),
+    [
+        ("", [("warning", "URDF014", "arm.urdf")]),
+        (_RUNS_XACRO, []),
+        (_LOADS, [("error", "URDF022", "arm.urdf"), ("warning", "URDF014", "arm.urdf")]),
+    ],
+    ids=["nothing loads it", "xacro runs", "it is loaded"],
+)
+def test_xacro_under_the_name_of_a_urdf(
+    launch: str, expected: list[tuple[str, str, str]], tmp_path: Path
+) -> None:
+    """It is a warning unless a launch file loads it as it stands, and a part without links is nothing."""
+    declared = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    files = {
+        "urdf/arm.urdf": f'{declared} name="arm"><xacro:include filename="made.xacro"/><xacro:arm/></robot>',
+        "urdf/more.urdf": f"{declared}></robot>",
+        "urdf/made.xacro": f'{declared}><xacro:macro name="arm"><link name="base"/></xacro:macro></robot>',
+        **({"launch/arm.launch.py": launch} if launch else {}),
+    }
+    for path, text in package("arm", "urdf", "launch", files=files).items():
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text(text, encoding="utf-8")
+    robots = json.loads(run(("inspect", tmp_path, "--format", "json")).stdout)["robots"]
+    said = []
+    for robot in robots:
+        for problem in robot["problems"]:
+            name = problem["location"]["path"].rpartition("/")[2]
+            said.append((problem["severity"], problem["code"], name))
+    assert sorted(said) == expected

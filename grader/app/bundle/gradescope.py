@@ -4,11 +4,11 @@ It has the grader, a rubric, and the scripts that install and run them there.
 """
 
 import json
-import re
 from importlib.metadata import PackageNotFoundError, requires
 from pathlib import Path, PurePosixPath
 
 from grader.base.errors import InputError
+from grader.base.patterns import on_use
 from grader.files.zip_writing import make_zip
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import RUBRIC_FILE, Rubric, shipped_rubrics
@@ -18,9 +18,7 @@ _SCRIPTS = Path(__file__).resolve().parent / "on_gradescope"
 _EXECUTABLES = ("setup.sh", "run_autograder")
 _DISTRIBUTION = "urdf-grader"
 _PACKAGE = Path(__file__).resolve().parent.parent.parent
-_EXTRA = re.compile(
-    r"""(?:\band\s+)?\bextra\s*==\s*["']([\w.-]+)["']"""
-)  # and extra == 'documents'
+_EXTRA = on_use(r"""(?:\band\s+)?\bextra\s*==\s*["']([\w.-]+)["']""")  # and extra == 'documents'
 
 
 def autograder_zip(rubric: Rubric) -> bytes:
@@ -61,7 +59,7 @@ def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
     Without such a check there are none if it is not below the rubric's folder. Raises GraderError.
     """
     is_outside = ".." in PurePosixPath(rubric.reference).parts
-    if rubric.solution is not None and rubric.compares_with_reference:
+    if rubric.solution and rubric.compares_with_reference:
         grade(
             rubric, rubric.solution.submission
         )  # raises GraderError where it cannot be compared with
@@ -140,7 +138,7 @@ def _without_extra(requirement: str, extra: str) -> str:
     """
     name, _, marker = requirement.partition(";")
     condition = _EXTRA.search(marker)
-    if condition is not None and condition[1] != extra:
+    if condition and condition[1] != extra:
         return ""
     rest = _EXTRA.sub("", marker).strip()
     if rest:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from typer import Option
 
 from grader import __version__
 from grader.app.cli.ending import outer_limits, quiet_interrupts
@@ -41,7 +42,6 @@ COMMANDS = {
 }
 # The commands that read one submission or workspace, with their limit of processor time in seconds.
 _LIMITED = {"grade": GRADE_SECONDS, "inspect": INSPECT_SECONDS, "graph": INSPECT_SECONDS}
-_COMPLETION = ("--show-completion", "--install-completion")
 
 
 def _print_version(is_given: bool) -> None:
@@ -53,7 +53,7 @@ def _print_version(is_given: bool) -> None:
 def _root(
     version: Annotated[
         bool,
-        typer.Option(
+        Option(
             "--version",
             "-V",
             help="Print the version and exit.",
@@ -136,8 +136,9 @@ def _run(arguments: Sequence[str]) -> int:
         return ExitCode.INTERRUPTED
     except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
         return _other_error(error, arguments)
-    if (
-        result == 1 and arguments[0] in _COMPLETION
+    if result == 1 and arguments[0] in (
+        "--show-completion",
+        "--install-completion",
     ):  # typer's code for a shell that it does not know
         return ExitCode.NOT_GRADED
     return result if isinstance(result, int) else ExitCode.PASSED
@@ -170,7 +171,8 @@ def _other_error(error: Exception, arguments: Sequence[str]) -> ExitCode:
     if not hasattr(error, "format_message"):  # which typer's errors of usage have
         warn(_one_line(f"internal error, please report it: {type(error).__name__}: {error}"))
         return ExitCode.FAULT
-    message, context = error.format_message(), getattr(error, "ctx", None)
+    message = error.format_message()
+    context = getattr(error, "ctx", None)
     if (
         context is not None and message == context.get_help()
     ):  # a group of commands without arguments

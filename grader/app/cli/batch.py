@@ -5,7 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Literal, get_args
 
-import typer
+from typer import Argument, Option
 
 from grader.app.cli.options import (
     RUBRIC_VARIABLE,
@@ -21,68 +21,87 @@ from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
 from grader.report.formats import Format, OutputFormat
 from grader.workers import forks
 
-Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
-_PATH = "A folder with an entry for each student, or the zip of an LMS; name those of all sections."
-_GRADEBOOK = "The gradebook, a folder; default: ID-grades, with the rubric's id."
-_RUBRIC = (
-    "The rubric: an id or a .toml file; default: that of the last run, else GRADER_RUBRIC, else "
-    "lab6."
-)
-_IGNORE = "An entry of PATH that is no student's, such as template; repeatable."
-_IGNORE_FILE = "A starter file, excluded from equal work; repeatable."
-_REPORTS = "The folder of the reports; default: reports in the gradebook."
-_TIMEOUT = "Limit of processor time for each submission."
+Layout = Literal["auto", "folders", "canvas", "moodle", "blackboard", "teams", "nbgrader"]
 
 
 def batch(
-    paths: Annotated[list[Path] | None, typer.Argument(metavar="PATH...", help=_PATH)] = None,
+    paths: Annotated[
+        list[Path] | None,
+        Argument(
+            metavar="PATH...",
+            help="A folder with an entry for each student, or the zip of an LMS; name those of "
+            "all sections.",
+        ),
+    ] = None,
     gradebook: Annotated[
-        Path | None, typer.Option(metavar="FOLDER", help=_GRADEBOOK, show_default=False)
+        Path | None,
+        Option(
+            metavar="FOLDER",
+            help="The gradebook, a folder; default: ID-grades, with the rubric's id.",
+            show_default=False,
+        ),
     ] = None,
     rubric: Annotated[
-        str | None, typer.Option(metavar="ID|FILE", help=_RUBRIC, show_default=False)
+        str | None,
+        Option(
+            metavar="ID|FILE",
+            help="The rubric: an id or a .toml file; default: that of the last run, "
+            "else GRADER_RUBRIC, else lab6.",
+            show_default=False,
+        ),
     ] = None,
     part: PartOption = None,
     answers: AnswersOption = None,
     arg: ArgOption = None,
     jobs: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, help="Worker processes; default: one per processor."),
+        Option(metavar="N", min=1, help="Worker processes; default: one per processor."),
     ] = None,
-    timeout: Annotated[float, typer.Option(metavar="SECONDS", min=0.1, help=_TIMEOUT)] = 20.0,
+    timeout: Annotated[
+        float,
+        Option(metavar="SECONDS", min=0.1, help="Limit of processor time for each submission."),
+    ] = 20.0,
     roster: Annotated[
-        Path | None, typer.Option(metavar="CSV", help="The students of the class, as CSV.")
+        Path | None, Option(metavar="CSV", help="The students of the class, as CSV.")
     ] = None,
     layout: Annotated[
         Layout | None,
-        typer.Option(metavar="LAYOUT", help=f"Layout of PATH: {', '.join(get_args(Layout))}."),
+        Option(metavar="LAYOUT", help=f"Layout of PATH: {', '.join(get_args(Layout))}."),
     ] = None,
     assignment: Annotated[
-        str | None, typer.Option(metavar="NAME", help="The assignment in the nbgrader layout.")
+        str | None, Option(metavar="NAME", help="The assignment in the nbgrader layout.")
     ] = None,
     report_format: Annotated[
         list[Format] | None,
-        typer.Option(metavar="FORMAT", help="Write a report for each student; repeatable."),
+        Option(metavar="FORMAT", help="Write a report for each student; repeatable."),
     ] = None,
-    reports: Annotated[Path | None, typer.Option(metavar="DIR", help=_REPORTS)] = None,
+    reports: Annotated[
+        Path | None,
+        Option(metavar="DIR", help="The folder of the reports; default: reports in the gradebook."),
+    ] = None,
     due: Annotated[
         str | None,
-        typer.Option(metavar="TIME", help="The deadline, such as 2026-11-20T23:59+01:00."),
+        Option(metavar="TIME", help="The deadline, such as 2026-11-20T23:59+01:00."),
     ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Grade unchanged submissions again.")
-    ] = False,
+    force: Annotated[bool, Option("--force", help="Grade unchanged submissions again.")] = False,
     cluster: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="A Dask cluster, as tcp://host:8786.")
+        str | None, Option(metavar="ADDRESS", help="A Dask cluster, as tcp://host:8786.")
     ] = None,
     max_size: Annotated[
-        int | None, typer.Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")
+        int | None, Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")
     ] = None,
-    ignore: Annotated[list[str] | None, typer.Option(metavar="NAME", help=_IGNORE)] = None,
+    ignore: Annotated[
+        list[str] | None,
+        Option(
+            metavar="NAME",
+            help="An entry of PATH that is no student's, such as template; repeatable.",
+        ),
+    ] = None,
     ignore_file: Annotated[
-        list[Path] | None, typer.Option(metavar="PATH", help=_IGNORE_FILE)
+        list[Path] | None,
+        Option(metavar="PATH", help="A starter file, excluded from equal work; repeatable."),
     ] = None,
-    verbose: Annotated[bool, typer.Option("--verbose", help="List all students.")] = False,
+    verbose: Annotated[bool, Option("--verbose", help="List all students.")] = False,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
     """Grade a class into a gradebook, in parallel.

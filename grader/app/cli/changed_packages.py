@@ -17,10 +17,11 @@ def main(arguments: Sequence[str]) -> int:
     Without another format, each finding has a line with its path from the repository's root, where
     pre-commit runs the hook.
     """
-    options, places = [*arguments], set[Path]()
+    options = list(arguments)
+    places = set()
     while options and Path(options[-1]).is_file():
         place = _find_inspected(Path(options.pop()))
-        if place is not None:
+        if place:
             places.add(place)
     if not any(option.startswith("--format") for option in options):
         options += ["--format", "concise"]

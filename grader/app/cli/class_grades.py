@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
+from typer import Argument, Option
 
 from grader.app.cli.options import FormatOption, GradebookOption, only_gradebook
 from grader.app.cli.streams import TERMINAL, screen
@@ -15,19 +16,6 @@ from grader.report.formats import OutputFormat
 from grader.report.writing import write_stdout
 
 _TARGETS = ("csv", *FORMS, "json", "html")
-_INTO = "The gradebook or worksheet that the LMS exported."
-_OUTPUT = (
-    "The file to write (default: standard output); with html, the folder (default: the gradebook)."
-)
-_STRICT = (
-    "Write nothing if a row or student is unmatched, a mark or time is in doubt, or the LMS "
-    "would refuse a grade."
-)
-_PENDING = "Also export grades with points that need manual grading."
-_MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
-_ONLY = "Omit the columns of other assignments."
-_EXCEL = "Write CSV that Excel opens with a double click; a file .xlsx is a spreadsheet."
-_FEEDBACK = "Write each student's report into a zip for Moodle or Canvas."
 
 
 def _known_target(target: str) -> str:
@@ -39,25 +27,69 @@ def _known_target(target: str) -> str:
 def export(
     target: Annotated[
         str,
-        typer.Argument(
+        Argument(
             metavar="|".join(_TARGETS), callback=_known_target, help="The format of the grades."
         ),
     ],
     gradebook: GradebookOption,
-    into: Annotated[Path | None, typer.Option(metavar="LMS-FILE", help=_INTO)] = None,
-    output: Annotated[Path | None, typer.Option(metavar="FILE|DIR", help=_OUTPUT)] = None,
-    strict: Annotated[bool, typer.Option("--strict", help=_STRICT)] = False,
+    into: Annotated[
+        Path | None,
+        Option(metavar="LMS-FILE", help="The gradebook or worksheet that the LMS exported."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        Option(
+            metavar="FILE|DIR",
+            help="The file to write (default: standard output); with html, the folder "
+            "(default: the gradebook).",
+        ),
+    ] = None,
+    strict: Annotated[
+        bool,
+        Option(
+            "--strict",
+            help="Write nothing if a row or student is unmatched, a mark or time is in doubt, "
+            "or the LMS would refuse a grade.",
+        ),
+    ] = False,
     column: Annotated[
-        str, typer.Option(metavar="TITLE", help="The grade's column, if it is ambiguous.")
+        str, Option(metavar="TITLE", help="The grade's column, if it is ambiguous.")
     ] = "",
-    pending_as_zero: Annotated[bool, typer.Option("--pending-as-zero", help=_PENDING)] = False,
-    any_maximum: Annotated[bool, typer.Option("--any-maximum", help=_MAXIMUM)] = False,
-    only: Annotated[bool, typer.Option("--only", help=_ONLY)] = False,
-    excel: Annotated[bool, typer.Option("--excel", help=_EXCEL)] = False,
-    feedback: Annotated[Path | None, typer.Option(metavar="ZIP", help=_FEEDBACK)] = None,
+    pending_as_zero: Annotated[
+        bool,
+        Option(
+            "--pending-as-zero", help="Also export grades with points that need manual grading."
+        ),
+    ] = False,
+    any_maximum: Annotated[
+        bool,
+        Option(
+            "--any-maximum", help="Export points unchanged, even if the LMS has another maximum."
+        ),
+    ] = False,
+    only: Annotated[bool, Option("--only", help="Omit the columns of other assignments.")] = False,
+    students: Annotated[
+        list[str] | None,
+        Option(
+            "--for",
+            metavar="STUDENT",
+            help="Release only the grades of this student (repeatable): an id, login or name.",
+        ),
+    ] = None,
+    excel: Annotated[
+        bool,
+        Option(
+            "--excel",
+            help="Write CSV that Excel opens with a double click; a file .xlsx is a spreadsheet.",
+        ),
+    ] = False,
+    feedback: Annotated[
+        Path | None,
+        Option(metavar="ZIP", help="Write each student's report into a zip for Moodle or Canvas."),
+    ] = None,
     feedback_format: Annotated[
         Literal["html", "markdown"],
-        typer.Option(metavar="html|markdown", help="The format of these reports."),
+        Option(metavar="html|markdown", help="The format of these reports."),
     ] = "html",
 ) -> int:
     """Export the grades for a spreadsheet, an LMS or a browser.
@@ -99,6 +131,7 @@ def export(
         pending_as_zero=pending_as_zero,
         any_maximum=any_maximum,
         only=only,
+        students=tuple(students or ()),
         excel=excel,
         feedback=feedback,
         feedback_format=feedback_format,
@@ -108,13 +141,11 @@ def export(
     return code
 
 
-_FIRST = "The gradebook, in place of the first argument."
-_VERBOSE = "Name all students who need attention (terminal)."
-
-
 def stats(
     gradebook: GradebookOption,
-    verbose: Annotated[bool, typer.Option("--verbose", help=_VERBOSE)] = False,
+    verbose: Annotated[
+        bool, Option("--verbose", help="Name all students who need attention (terminal).")
+    ] = False,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
     """Show statistics of a class: grades, mistakes, equal work.
@@ -142,19 +173,20 @@ def stats(
 def diff(
     gradebooks: Annotated[
         list[Path] | None,
-        typer.Argument(
+        Argument(
             metavar="[GRADEBOOK] [GRADEBOOK]", help="A gradebook; of two, the older one first."
         ),
     ] = None,
     gradebook: Annotated[
-        Path | None, typer.Option("--gradebook", metavar="FOLDER", help=_FIRST)
+        Path | None,
+        Option(
+            "--gradebook", metavar="FOLDER", help="The gradebook, in place of the first argument."
+        ),
     ] = None,
     before: Annotated[
-        int | None, typer.Option(metavar="RUN", help="The number of the older run.")
+        int | None, Option(metavar="RUN", help="The number of the older run.")
     ] = None,
-    after: Annotated[
-        int | None, typer.Option(metavar="RUN", help="The number of the newer run.")
-    ] = None,
+    after: Annotated[int | None, Option(metavar="RUN", help="The number of the newer run.")] = None,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
     """Show whose grade changed between two runs, and why.
@@ -179,8 +211,5 @@ def diff(
     """
     from grader.classroom.reports.class_figures import compare
 
-    if gradebook is not None:
-        books = [gradebook, *(gradebooks or ())]
-    else:
-        books = gradebooks or [only_gradebook()]
+    books = [gradebook, *(gradebooks or ())] if gradebook else gradebooks or [only_gradebook()]
     return compare(tuple(books), before, after, output_format, screen())

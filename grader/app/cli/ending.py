@@ -37,7 +37,7 @@ def quiet_interrupts() -> Iterator[None]:
     if before is not signal.default_int_handler:  # ignored, as after nohup, or somebody else's
         yield
         return
-    arrived: list[int] = []
+    arrived = []
     is_in_hook = False
 
     def interrupt(number: int, frame: FrameType | None) -> None:
@@ -58,7 +58,8 @@ def quiet_interrupts() -> Iterator[None]:
         elif not (arrived and issubclass(unraisable.exc_type, ResourceWarning)):
             hook(unraisable)
 
-    hook, sys.unraisablehook = sys.unraisablehook, ignored
+    hook = sys.unraisablehook
+    sys.unraisablehook = ignored
     signal.signal(signal.SIGINT, interrupt)
     try:
         yield

@@ -5,20 +5,18 @@ They print what codes and checks mean, and what the files of the grader hold.
 
 from typing import Annotated, Literal, get_args
 
-import typer
+from typer import Argument
 
 from grader.app.cli.options import RubricOption
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
-
-_NAME = "For example URDF051, frame_at, lidar-frame, ekf_node.frequency or releases."
 
 
 def explain(
     name: Annotated[
         str,
-        typer.Argument(
+        Argument(
             metavar="CODE|CHECK|CRITERION|PARAMETER",
-            help=_NAME,
+            help="For example URDF051, frame_at, lidar-frame, ekf_node.frequency or releases.",
         ),
     ],
     rubric: RubricOption = DEFAULT_RUBRIC,
@@ -47,7 +45,7 @@ SchemaName = Literal["report", "rubric", "inspect", "graph", "class", "diff", "r
 def schema(
     name: Annotated[
         SchemaName,
-        typer.Argument(metavar="|".join(get_args(SchemaName)), help="The schema to print."),
+        Argument(metavar="|".join(get_args(SchemaName)), help="The schema to print."),
     ],
 ) -> str:
     """Print a JSON Schema of the grader's input or output.

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 from grader.app.cli.options import (
     AnswersOption,
@@ -24,41 +24,59 @@ from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
 from grader.report.formats import Format, render
 from grader.report.writing import write_stdout
 
-_PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for standard input."
-_FAIL_UNDER = "Exit 0 if the score reaches this, in points or percent."
-_FIX = (
-    "Write the graded file with all proven edits to a file; of a folder or an archive, the "
-    "changed files to a folder."
-)
-_WATCH = "Grade again after every change, until Ctrl-C; grader view shows the robot."
-_EXPECT = "Refuse a rubric with another hash (see grader rubric show)."
-
 
 def grade(
     path: Annotated[
-        str, typer.Argument(metavar="[PATH]", help=_PATH, show_default="the current folder")
+        str,
+        Argument(
+            metavar="[PATH]",
+            help="A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for "
+            "standard input.",
+            show_default="the current folder",
+        ),
     ] = ".",
     rubric: RubricOption = DEFAULT_RUBRIC,
-    expect_rubric: Annotated[str | None, typer.Option(metavar="SHA256", help=_EXPECT)] = None,
+    expect_rubric: Annotated[
+        str | None,
+        Option(
+            metavar="SHA256", help="Refuse a rubric with another hash (see grader rubric show)."
+        ),
+    ] = None,
     part: PartOption = None,
     output_format: Annotated[
         Format,
-        typer.Option("--format", metavar="FORMAT", help=f"Output format: {', '.join(Format)}."),
+        Option("--format", metavar="FORMAT", help=f"Output format: {', '.join(Format)}."),
     ] = Format.TERMINAL,
     save: SaveOption = None,
-    fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_FAIL_UNDER)] = None,
+    fail_under: Annotated[
+        str | None,
+        Option(metavar="N|N%", help="Exit 0 if the score reaches this, in points or percent."),
+    ] = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
     answers: AnswersOption = None,
     verbose: Annotated[
-        bool, typer.Option("--verbose", help="Also show what passed, answers and notes (terminal).")
+        bool, Option("--verbose", help="Also show what passed, answers and notes (terminal).")
     ] = False,
     hints: Annotated[
         HintLevel | None,
-        typer.Option(metavar="LEVEL", help="Maximum detail of hints: none, place, cause or edit."),
+        Option(metavar="LEVEL", help="Maximum detail of hints: none, place, cause or edit."),
     ] = None,
-    fix: Annotated[Path | None, typer.Option(metavar="FILE|FOLDER", help=_FIX)] = None,
-    watch: Annotated[bool, typer.Option("--watch", help=_WATCH)] = False,
+    fix: Annotated[
+        Path | None,
+        Option(
+            metavar="FILE|FOLDER",
+            help="Write the graded file with all proven edits to a file; of a folder or an "
+            "archive, the changed files to a folder.",
+        ),
+    ] = None,
+    watch: Annotated[
+        bool,
+        Option(
+            "--watch",
+            help="Grade again after every change, until Ctrl-C; grader view shows the robot.",
+        ),
+    ] = False,
 ) -> int:
     """Grade a submission against a rubric.
 

@@ -2,32 +2,58 @@
 
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
-from grader.app.cli.options import MaxSizeOption, SaveOption
+from grader.app.cli.options import DistroOption, MaxSizeOption, SaveOption
 from grader.app.cli.streams import TERMINAL
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import GraphFormat
-from grader.report.invocation import ExitCode
-from grader.ros.api import Release
-
-_PATH = "A package, workspace or archive."
-_LAUNCH = "The launch file, or the end of its path; default: the one that includes most files."
-_ARG = "Value of a launch argument; repeatable."
-_DISTRO = "The release of ROS 2, such as humble; default: what the files state."
-_NODE = "Show this node and what it connects to."
 
 
 def graph(
     path: Annotated[
-        str, typer.Argument(metavar="[PATH]", help=_PATH, show_default="the current folder")
+        str,
+        Argument(
+            metavar="[PATH]",
+            help="A package, workspace or archive.",
+            show_default="the current folder",
+        ),
     ] = ".",
-    launch: Annotated[str, typer.Option(metavar="FILE", help=_LAUNCH, show_default=False)] = "",
-    arg: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help=_ARG)] = None,
-    distro: Annotated[Release | None, typer.Option(metavar="NAME", help=_DISTRO)] = None,
-    node: Annotated[str, typer.Option(metavar="NAME", help=_NODE, show_default=False)] = "",
+    launch: Annotated[
+        str,
+        Option(
+            metavar="FILE",
+            help="The launch file, or the end of its path; default: the one that includes most "
+            "files.",
+            show_default=False,
+        ),
+    ] = "",
+    arg: Annotated[
+        list[str] | None,
+        Option(metavar="NAME=VALUE", help="Value of a launch argument; repeatable."),
+    ] = None,
+    distro: DistroOption = None,
+    node: Annotated[
+        str,
+        Option(metavar="NAME", help="Show this node and what it connects to.", show_default=False),
+    ] = "",
+    connected: Annotated[
+        bool, Option("--connected", help="Show only what connects to something else.")
+    ] = False,
+    verbose: Annotated[
+        bool,
+        Option("--verbose", help="Also show parameters, and services that nothing asks for."),
+    ] = False,
+    recorded: Annotated[
+        str,
+        Option(
+            metavar="PATH",
+            help="Compare topics with this recording of `ros2 bag record`.",
+            show_default=False,
+        ),
+    ] = "",
     output_format: Annotated[
-        GraphFormat, typer.Option("--format", help="Output format.")
+        GraphFormat, Option("--format", help="Output format.")
     ] = GraphFormat.TEXT,
     save: SaveOption = None,
     max_size: MaxSizeOption = URDF_LIMIT,
@@ -51,6 +77,8 @@ def graph(
       grader graph my_workspace --node /slam_toolbox
 
       grader graph my_workspace --format mermaid > graph.mmd
+
+      grader graph my_workspace --recorded drive
     """
     from grader.app.commands.show_graph import GraphRequest, graph_and_save
 
@@ -60,8 +88,11 @@ def graph(
         arg=arg,
         distro=distro,
         node=node,
+        connected=connected,
+        verbose=verbose,
         output_format=output_format,
         save=save,
         max_size=max_size,
+        recorded=recorded,
     )
-    return ExitCode.PASSED if graph_and_save(request, TERMINAL) else ExitCode.FAILED
+    return graph_and_save(request, TERMINAL)

@@ -2,57 +2,89 @@
 
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
-from grader.app.cli.options import ArgOption, MaxSizeOption, SaveOption
+from grader.app.cli.options import ArgOption, DistroOption, LogOption, MaxSizeOption, SaveOption
 from grader.app.cli.streams import TERMINAL, pass_on
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import InspectFormat
-from grader.report.invocation import ExitCode
-from grader.ros.api import Release
-
-_PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
-_BASELINE = "Do not show the findings of this file, which --write-baseline wrote."
-_WRITE_BASELINE = "Write the findings, to be shown no more with --baseline; exits 0."
-_LOG = "Explain this log, or a folder of logs; - for a pipe, which is passed on."
-_ROBOT = "Show this robot of several whole: its name, or the end of its path."
-_JOINT = "Position of a joint, in radians or metres; repeatable."
-_WATCH = "Inspect again after every change, until Ctrl-C; grader view shows the robot."
-_SELECT = (
-    "Show only problems whose code begins so, such as REF or REF004, or of a rule; repeatable."
-)
-_IGNORE = "Do not show problems whose code begins so, or of a rule; repeatable."
-_RELATIVE = "The frame of the poses; default: the root."
-_VERBOSE = "Spell out all problems, and show the tree and the poses of each robot (terminal)."
-_DISTRO = "The release of ROS 2, such as humble; default: what the files state."
 
 
 def inspect(
     path: Annotated[
-        str, typer.Argument(metavar="[PATH]", help=_PATH, show_default="the current folder")
+        str,
+        Argument(
+            metavar="[PATH]",
+            help="A .urdf file, a package, workspace or archive, or - for standard input.",
+            show_default="the current folder",
+        ),
     ] = ".",
-    robot: Annotated[str, typer.Option(metavar="NAME", help=_ROBOT, show_default=False)] = "",
+    robot: Annotated[
+        str,
+        Option(
+            metavar="NAME",
+            help="Show this robot of several whole: its name, or the end of its path.",
+            show_default=False,
+        ),
+    ] = "",
     joint: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME=VALUE", help=_JOINT),
+        Option(metavar="NAME=VALUE", help="Position of a joint, in radians or metres; repeatable."),
     ] = None,
-    relative_to: Annotated[str | None, typer.Option(metavar="LINK", help=_RELATIVE)] = None,
-    distro: Annotated[Release | None, typer.Option(metavar="NAME", help=_DISTRO)] = None,
+    relative_to: Annotated[
+        str | None, Option(metavar="LINK", help="The frame of the poses; default: the root.")
+    ] = None,
+    distro: DistroOption = None,
     output_format: Annotated[
-        InspectFormat, typer.Option("--format", help="Output format.")
+        InspectFormat, Option("--format", help="Output format.")
     ] = InspectFormat.TERMINAL,
     save: SaveOption = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
-    watch: Annotated[bool, typer.Option("--watch", help=_WATCH)] = False,
-    select: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_SELECT)] = None,
-    ignore: Annotated[list[str] | None, typer.Option(metavar="CODE", help=_IGNORE)] = None,
-    baseline: Annotated[str | None, typer.Option(metavar="FILE", help=_BASELINE)] = None,
-    write_baseline: Annotated[
-        str | None, typer.Option(metavar="FILE", help=_WRITE_BASELINE)
+    watch: Annotated[
+        bool,
+        Option(
+            "--watch",
+            help="Inspect again after every change, until Ctrl-C; grader view shows the robot.",
+        ),
+    ] = False,
+    select: Annotated[
+        list[str] | None,
+        Option(
+            metavar="CODE",
+            help="Show only problems whose code begins so, such as REF or REF004, or of a "
+            "rule; repeatable.",
+        ),
     ] = None,
-    log: Annotated[str | None, typer.Option(metavar="FILE", help=_LOG)] = None,
-    verbose: Annotated[bool, typer.Option("--verbose", help=_VERBOSE)] = False,
+    ignore: Annotated[
+        list[str] | None,
+        Option(
+            metavar="CODE",
+            help="Do not show problems whose code begins so, or of a rule; repeatable.",
+        ),
+    ] = None,
+    baseline: Annotated[
+        str | None,
+        Option(
+            metavar="FILE",
+            help="Do not show the findings of this file, which --write-baseline wrote.",
+        ),
+    ] = None,
+    write_baseline: Annotated[
+        str | None,
+        Option(
+            metavar="FILE", help="Write the findings, to be shown no more with --baseline; exits 0."
+        ),
+    ] = None,
+    log: LogOption = None,
+    verbose: Annotated[
+        bool,
+        Option(
+            "--verbose",
+            help="Spell out all problems, and show the tree and the poses of each robot "
+            "(terminal).",
+        ),
+    ] = False,
 ) -> int:
     """Show robots as ROS 2 reads them, and what is wrong in packages.
 
@@ -112,4 +144,4 @@ def inspect(
         write_baseline=write_baseline,
         log=log_data,
     )
-    return ExitCode.PASSED if inspect_and_save(request, TERMINAL) else ExitCode.FAILED
+    return inspect_and_save(request, TERMINAL)

@@ -4,15 +4,16 @@ import os
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
+from typer import Option
 
 from grader.base.errors import InputError
 from grader.base.text import enumerated, printable_path
 from grader.report.formats import OutputFormat
+from grader.ros.api import Release
 
 PartOption = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         "--part",
         metavar="ID",
         help="Grade only this part; repeatable.",
@@ -23,7 +24,7 @@ RUBRIC_VARIABLE = "GRADER_RUBRIC"
 
 def rubric_option(text: str, *, shows_default: bool = False) -> Any:
     """Return the option --rubric with a help text."""
-    return typer.Option(
+    return Option(
         metavar="ID|FILE",
         envvar=RUBRIC_VARIABLE,
         help=text,
@@ -34,7 +35,6 @@ def rubric_option(text: str, *, shows_default: bool = False) -> Any:
 RubricOption = Annotated[
     str, rubric_option("The rubric: an id or a .toml file.", shows_default=True)
 ]
-_GRADEBOOK = "The gradebook; default: the only one in the current folder."
 _NOT_NAMED = Path("*")  # no folder is searched for --help
 
 
@@ -52,44 +52,63 @@ def only_gradebook(named: Path = _NOT_NAMED) -> Path:
         return folders[0]
     if folders:
         raise InputError(
-            f"name one with --gradebook: {enumerated([*map(printable_path, folders)], 10, 'or')}"
+            f"name one with --gradebook: {enumerated(map(printable_path, folders), 10, 'or')}"
         )
     raise InputError(
         "there is no gradebook here: name one with --gradebook; `grader batch PATH` makes it"
     )
 
 
-_ONLY: Any = {
+_ONLY = {
     "default_factory": lambda: _NOT_NAMED,
     "callback": only_gradebook,
     "show_default": False,
 }
 GradebookOption = Annotated[
-    Path, typer.Option("--gradebook", metavar="FOLDER", help=_GRADEBOOK, **_ONLY)
+    Path,
+    Option(
+        "--gradebook",
+        metavar="FOLDER",
+        help="The gradebook; default: the only one in the current folder.",
+        **_ONLY,
+    ),
 ]
-MaxSizeOption = Annotated[int, typer.Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")]
+MaxSizeOption = Annotated[int, Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")]
 AnswersOption = Annotated[
     Path | None,
-    typer.Option("--answers", metavar="FILE", help="The .toml file with the model answers."),
+    Option("--answers", metavar="FILE", help="The .toml file with the model answers."),
+]
+LogOption = Annotated[
+    str | None,
+    Option(
+        "--log",
+        metavar="FILE",
+        help="Explain this log, or a folder of logs; - for a pipe, which is passed on.",
+    ),
 ]
 ArgOption = Annotated[
     list[str] | None,
-    typer.Option(
+    Option(
         "--arg", metavar="NAME=VALUE", help="The value of an argument of a xacro file; repeatable."
+    ),
+]
+DistroOption = Annotated[
+    Release | None,
+    Option(
+        metavar="NAME",
+        help="The release of ROS 2, such as humble; default: what the files state.",
     ),
 ]
 SaveOption = Annotated[
     list[str] | None,
-    typer.Option(
-        "--save", metavar="FORMAT=FILE", help="Also write a report to a file; repeatable."
-    ),
+    Option("--save", metavar="FORMAT=FILE", help="Also write a report to a file; repeatable."),
 ]
 ByOption = Annotated[
-    str, typer.Option("--by", metavar="NAME", help="Your name in reports; default: none.")
+    str, Option("--by", metavar="NAME", help="Your name in reports; default: none.")
 ]
 PortOption = Annotated[
     int,
-    typer.Option(
+    Option(
         "--port",
         metavar="N",
         min=0,
@@ -98,5 +117,5 @@ PortOption = Annotated[
         help="The port of the page; default: any free port.",
     ),
 ]
-NoBrowserOption = Annotated[bool, typer.Option("--no-browser", help="Only print the address.")]
-FormatOption = Annotated[OutputFormat, typer.Option("--format", help="Output format.")]
+NoBrowserOption = Annotated[bool, Option("--no-browser", help="Only print the address.")]
+FormatOption = Annotated[OutputFormat, Option("--format", help="Output format.")]

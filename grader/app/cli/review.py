@@ -6,7 +6,7 @@ A person grades by command, on a page in the browser, or in a spreadsheet.
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 from grader.app.cli.options import (
     AnswersOption,
@@ -18,34 +18,36 @@ from grader.app.cli.options import (
 from grader.app.cli.streams import TERMINAL, warn
 from grader.base.errors import InputError
 
-_CRITERION = "The id of the criterion; grade: the final mark; deadline: the student's own."
-_POINTS = "The points; with grade also excused; with deadline a time; - withdraws a mark."
-_SHEET = "Write what needs manual grading into a new CSV file instead."
-
 
 def mark(
     gradebook: GradebookOption,
     student: Annotated[
         str,
-        typer.Argument(
+        Argument(
             metavar="STUDENT",
             help="The id, login, email address or name.",
         ),
     ] = "",
     criterion: Annotated[
         str,
-        typer.Argument(
+        Argument(
             metavar="CRITERION|grade|deadline",
-            help=_CRITERION,
+            help="The id of the criterion; grade: the final mark; deadline: the student's own.",
         ),
     ] = "",
-    points: Annotated[str, typer.Argument(metavar="[POINTS|TIME|excused|-]", help=_POINTS)] = "",
-    comment: Annotated[str, typer.Option(metavar="TEXT", help="For the student.")] = "",
+    points: Annotated[
+        str,
+        Argument(
+            metavar="[POINTS|TIME|excused|-]",
+            help="The points; with grade also excused; with deadline a time; - withdraws a mark.",
+        ),
+    ] = "",
+    comment: Annotated[str, Option(metavar="TEXT", help="For the student.")] = "",
     missing: Annotated[
-        bool, typer.Option("--missing", help="All students without a submission.")
+        bool, Option("--missing", help="All students without a submission.")
     ] = False,
     file: Annotated[
-        Path | None, typer.Option("--import", metavar="CSV", help="The marks of many students.")
+        Path | None, Option("--import", metavar="CSV", help="The marks of many students.")
     ] = None,
     by: ByOption = "",
 ) -> str:
@@ -73,7 +75,7 @@ def mark(
     """
     from grader.classroom.commands.manual_marks import give_mark, import_marks, mark_missing
 
-    if file is not None:
+    if file:
         if student or criterion or points or comment or missing:
             raise InputError("--import takes no argument and no other option but --by")
         return import_marks(gradebook, file, by, warn)
@@ -91,16 +93,19 @@ def mark(
 
 def review(
     gradebook: GradebookOption,
-    criterion: Annotated[str, typer.Option(metavar="ID", help="Only this criterion.")] = "",
+    criterion: Annotated[str, Option(metavar="ID", help="Only this criterion.")] = "",
     section: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Only this section of the roster.")
+        str | None, Option(metavar="NAME", help="Only this section of the roster.")
     ] = None,
     anonymous: Annotated[
-        bool, typer.Option("--anonymous", help="Show no names, ids or paths of students.")
+        bool, Option("--anonymous", help="Show no names, ids or paths of students.")
     ] = False,
     by: ByOption = "",
     answers: AnswersOption = None,
-    sheet: Annotated[Path | None, typer.Option(metavar="FILE", help=_SHEET)] = None,
+    sheet: Annotated[
+        Path | None,
+        Option(metavar="FILE", help="Write what needs manual grading into a new CSV file instead."),
+    ] = None,
     port: PortOption = 0,
     no_browser: NoBrowserOption = False,
 ) -> str:
@@ -133,6 +138,6 @@ def review(
     session = ReviewSession(
         gradebook, ReviewFilter(criterion, section or ""), by, answers, is_anonymous=anonymous
     )
-    if sheet is not None:
+    if sheet:
         return write_sheet(session, sheet)
     return review_in_browser(session, port, TERMINAL, opens=not no_browser)

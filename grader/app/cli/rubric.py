@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
+from typer import Argument, Option
 
 from grader.app.cli.options import AnswersOption, FormatOption, RubricOption
 from grader.app.cli.streams import TERMINAL, warn
@@ -16,7 +17,9 @@ from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC, load_named
 from grader.report.formats import OutputFormat
 from grader.report.writing import write_stdout
 
-_HELP = """List, write, check, test and review rubrics; list the checks.
+rubric = typer.Typer(
+    help=(
+        """List, write, check, test and review rubrics; list the checks.
 
 Examples:
 
@@ -30,19 +33,12 @@ Examples:
 
   grader rubric test my_lab.toml
 """
-_FOLDER = "A folder with samples: submissions with an expected.toml."
-_WITHOUT = "Omit kinds of criteria, such as colours,masses,inertia,collision, or families of names."
-_NAMES_ONLY = "Only what names have to agree on, and that the packages build."
-_FREE = "A name that the handout leaves open: of a link, joint, node, topic or file. Repeatable."
-_TOTAL = "The points of all criteria together."
-_WEIGHTS = "What matters gets more points, or all criteria get equal ones."
-_LEAST = "Exit 1 if the mutation score is less, in percent."
-_ALL = "Grade all mutants, not a sample."
-_SEED = "Draw another sample of the mutants."
-rubric = typer.Typer(help=_HELP, no_args_is_help=True)
+    ),
+    no_args_is_help=True,
+)
 RubricArgument = Annotated[
     str,
-    typer.Argument(
+    Argument(
         metavar="ID|FILE",
         help="The rubric: an id or a .toml file.",
     ),
@@ -64,6 +60,7 @@ def list_rubrics() -> str:
 def show_rubric(
     name: RubricArgument,
     answers: AnswersOption = None,
+    output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
     """Show the parts and criteria of a rubric with their points.
 
@@ -73,9 +70,35 @@ def show_rubric(
 
       grader rubric show my_lab.toml --answers my_lab.answers.toml
     """
-    from grader.report.explanations import rubric_overview
+    from grader.report.explanations import rubric_json, rubric_overview
 
-    return rubric_overview(load_named(name, answers))
+    shown = load_named(name, answers)
+    return rubric_json(shown) if output_format == "json" else rubric_overview(shown)
+
+
+@rubric.command("sheet")
+def write_sheet(
+    name: RubricArgument,
+    output_format: Annotated[
+        Literal["markdown", "html"], Option("--format", help="Output format.")
+    ] = "markdown",
+    picture: Annotated[
+        bool, Option("--picture", help="Show a picture of the reference (html).")
+    ] = False,
+) -> str:
+    """Write what students get: tasks, points, and what to submit.
+
+    It has nothing of the reference but with --picture.
+
+    Examples:
+
+      grader rubric sheet lab6 > sheet.md
+
+      grader rubric sheet my_lab.toml --format html > sheet.html
+    """
+    from grader.report.pages.sheet import write_sheet as write
+
+    return write(load_named(name), output_format, has_picture=picture)
 
 
 @rubric.command("checks")
@@ -95,26 +118,54 @@ def list_checks() -> str:
 
 @rubric.command("new")
 def new_rubric(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="The .toml file to write.")],
+    file: Annotated[Path, Argument(metavar="FILE", help="The .toml file to write.")],
     reference: Annotated[
         str,
-        typer.Option(
+        Option(
             "--from",
             metavar="PATH",
             help="The reference: a URDF, xacro, package, workspace or archive.",
+            show_default="the recording",
         ),
-    ],
-    force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
-    without: Annotated[list[str] | None, typer.Option(metavar="KINDS", help=_WITHOUT)] = None,
-    names_only: Annotated[bool, typer.Option("--names-only", help=_NAMES_ONLY)] = False,
-    free: Annotated[list[str] | None, typer.Option(metavar="NAME", help=_FREE)] = None,
-    weights: Annotated[Literal["importance", "equal"], typer.Option(help=_WEIGHTS)] = "importance",
-    total: Annotated[int | None, typer.Option(metavar="POINTS", min=1, help=_TOTAL)] = None,
+    ] = "",
+    recording: Annotated[
+        Path | None, Option(metavar="PATH", help="A recording in the reference.")
+    ] = None,
+    force: Annotated[bool, Option("--force", help="Replace FILE if it exists.")] = False,
+    without: Annotated[
+        list[str] | None,
+        Option(
+            metavar="KINDS",
+            help="Omit kinds of criteria, such as colours,masses,inertia,collision, or "
+            "families of names.",
+        ),
+    ] = None,
+    names_only: Annotated[
+        bool,
+        Option(
+            "--names-only", help="Only what names have to agree on, and that the packages build."
+        ),
+    ] = False,
+    free: Annotated[
+        list[str] | None,
+        Option(
+            metavar="NAME",
+            help="A name that the handout leaves open: of a link, joint, node, topic or file. "
+            "Repeatable.",
+        ),
+    ] = None,
+    weights: Annotated[
+        Literal["importance", "equal"],
+        Option(help="What matters gets more points, or all criteria get equal ones."),
+    ] = "importance",
+    total: Annotated[
+        int | None, Option(metavar="POINTS", min=1, help="The points of all criteria together.")
+    ] = None,
 ) -> str:
     """Write a rubric from a reference solution.
 
-    It has a criterion for each fact that can be measured. It is graded on the reference, which must
-    get full marks. The output lists the facts that no check can test.
+    It has a criterion for each fact that can be measured, also of a recording. It is graded on the
+    reference, which must get full marks. The output lists the facts that no check can test.
 
     What ROS 2 does not care about is free: names of launch files and of `<ros2_control>`, files
     that are only named, the build type. With nodes, controllers or a world in the solution, so are
@@ -129,23 +180,28 @@ def new_rubric(
       grader rubric new my_lab.toml --from solution.urdf --force
 
       grader rubric new my_lab.toml --from my_lab --without colours,masses
+
+      grader rubric new my_lab.toml --from my_lab --recording my_lab/drive
     """
     from grader.app.commands.rubric_making import draft_choice, write_rubric
 
     choice = draft_choice(
         without or (), free or (), is_names_only=names_only, weights=weights, total=total
     )
-    return write_rubric(file, reference, warn, choice, force=force)
+    path = reference or str(recording or "")
+    if not path:
+        raise InputError("give --from PATH, or --recording PATH")
+    return write_rubric(file, path, warn, choice, force=force, recording=recording)
 
 
 @rubric.command("copy")
 def copy_rubric(
     name: Annotated[
         str,
-        typer.Argument(metavar="ID", help="A rubric of the grader."),
+        Argument(metavar="ID", help="A rubric of the grader."),
     ],
     folder: Annotated[
-        Path, typer.Argument(metavar="FOLDER", help="The folder to write into: FOLDER/ID.")
+        Path, Argument(metavar="FOLDER", help="The folder to write into: FOLDER/ID.")
     ],
 ) -> str:
     """Copy a rubric with its files, to change it.
@@ -176,11 +232,18 @@ def check_rubric(file: RubricArgument) -> int:
 @rubric.command("test")
 def run_test(
     name: RubricArgument,
-    folder: Annotated[Path | None, typer.Argument(metavar="[FOLDER]", help=_FOLDER)] = None,
-    fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_LEAST)] = None,
+    folder: Annotated[
+        Path | None,
+        Argument(
+            metavar="[FOLDER]", help="A folder with samples: submissions with an expected.toml."
+        ),
+    ] = None,
+    fail_under: Annotated[
+        str | None, Option(metavar="N|N%", help="Exit 1 if the mutation score is less, in percent.")
+    ] = None,
     output_format: FormatOption = OutputFormat.TERMINAL,
-    are_all: Annotated[bool, typer.Option("--all", help=_ALL)] = False,
-    seed: Annotated[int, typer.Option(metavar="N", help=_SEED)] = 0,
+    are_all: Annotated[bool, Option("--all", help="Grade all mutants, not a sample.")] = False,
+    seed: Annotated[int, Option(metavar="N", help="Draw another sample of the mutants.")] = 0,
 ) -> int:
     """Test a rubric on variants of its reference and on samples.
 
@@ -211,7 +274,7 @@ def run_test(
 def review_rubric(
     gradebook: Annotated[
         Path | None,
-        typer.Argument(metavar="[GRADEBOOK]", help="The gradebook (default: the only one here)."),
+        Argument(metavar="[GRADEBOOK]", help="The gradebook (default: the only one here)."),
     ] = None,
 ) -> str:
     """Show what to look at before grades go out.
@@ -233,12 +296,10 @@ def review_rubric(
 
 def bundle(
     platform: Annotated[
-        Literal["gradescope"], typer.Argument(metavar="PLATFORM", help="The platform: gradescope.")
+        Literal["gradescope"], Argument(metavar="PLATFORM", help="The platform: gradescope.")
     ],
-    file: Annotated[
-        Path | None, typer.Argument(metavar="[OUT.zip]", help="The file to write.")
-    ] = None,
-    output: Annotated[Path | None, typer.Option(metavar="FILE", help="The file to write.")] = None,
+    file: Annotated[Path | None, Argument(metavar="[OUT.zip]", help="The file to write.")] = None,
+    output: Annotated[Path | None, Option(metavar="FILE", help="The file to write.")] = None,
     rubric: RubricOption = DEFAULT_RUBRIC,
 ) -> str:
     """Write an autograder zip for Gradescope.
@@ -251,7 +312,7 @@ def bundle(
 
       grader bundle gradescope --output autograder.zip --rubric my_lab.toml
     """
-    given = [path for path in (file, output) if path is not None]
+    given = [path for path in (file, output) if path]
     if len(given) != 1:
         raise InputError("name the file to write once: --output autograder.zip")
     return rubrics.bundle(platform, given[0], rubric)

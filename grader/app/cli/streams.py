@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 _VTE_WITH_LINKS = 5000  # the library of GNOME Terminal and others
 # Terminals with links, by TERM or TERM_PROGRAM.
 _TERMINALS = ("kitty", "alacritty", "foot", "ghostty", "iTerm.app", "WezTerm", "vscode", "Hyper")
-_LINE_SECONDS, _TERMINAL_SECONDS = 10.0, 0.1
+_LINE_SECONDS = 10.0
+_TERMINAL_SECONDS = 0.1
 
 
 def screen(here: str | None = None) -> Screen:
@@ -29,11 +30,13 @@ def screen(here: str | None = None) -> Screen:
     """
     out = sys.stdout
     is_terminal = out is not None and out.isatty()
-    width, rows = columns(), 0
+    width = columns()
+    rows = 0
     if is_terminal:
         with suppress(OSError):
             size = os.get_terminal_size(out.fileno())
-            width, rows = columns(size.columns), size.lines
+            width = columns(size.columns)
+            rows = size.lines
     if os.environ.get("TERM") == "dumb":  # it has lines, and no commands: it cannot be cleared
         is_terminal = False
     encoding = (out.encoding if out is not None else "") or "utf-8"

@@ -37,7 +37,6 @@ _EXAMPLES = {
     "--rubric": "my_robot.urdf --rubric lab6",
     "--save": "my_robot.urdf --save html=report.html",
 }
-_TAKES_A_RUBRIC = ("grade", "view", "batch")
 _DASHES = "\u2010\u2011\u2012\u2013\u2014\u2212-"  # in place of hyphens, as word processors write
 _QUOTES = "\u2018\u2019\u201c\u201d'\""
 _MAX_COMMANDS = 3  # that are named
@@ -68,7 +67,8 @@ def commands_here(folder: Path) -> str:
     robots = [name for name in names if name.endswith(ROBOT_ENDINGS)]
     commands = _IN_WORKSPACE
     if {"class.toml", "results.jsonl"} <= {*names}:
-        what, commands = "a gradebook", _IN_GRADEBOOK
+        what = "a gradebook"
+        commands = _IN_GRADEBOOK
     elif {"package.xml", "src"} & {*names}:
         what = "a package" if "package.xml" in names else "a workspace"
     elif robots:
@@ -96,7 +96,7 @@ class _CommandLine(NamedTuple):
     @property
     def loose(self) -> list[int]:
         """The indices of the words that are neither options nor their values."""
-        positions = list[int]()
+        positions = []
         is_value = False
         for index, word in enumerate(self.words[self.start :], self.start):
             if is_value:
@@ -128,7 +128,7 @@ def usage_message(error: Any, arguments: Sequence[str], root: Any) -> str:
     line = _command_line(arguments, root)
     correction = _correct_hyphens(line) or _correct_command(line)
     correction = correction or _correct_option(line, error) or _correct_choice(line, error)
-    if correction is not None:
+    if correction:
         return f"{correction.why}: `grader {_shown(correction.words)}`"
     if hasattr(error, "possibilities"):
         error.possibilities = None  # guesses by letters alone
@@ -152,13 +152,15 @@ def _extra_words(line: _CommandLine, error: Any) -> str:
 
 def _command_line(arguments: Sequence[str], root: Any) -> _CommandLine:
     """Return a command line with the command that it names."""
-    command, start = root, 0
+    command = root
+    start = 0
     for word in arguments:
         inner = getattr(command, "commands", {}).get(word)
         if inner is None:
             break
-        command, start = inner, start + 1
-    return _CommandLine([*arguments], root, command, start)
+        command = inner
+        start = start + 1
+    return _CommandLine(list(arguments), root, command, start)
 
 
 def message_on_path(error: NotThereError, arguments: Sequence[str]) -> str:
@@ -169,7 +171,7 @@ def message_on_path(error: NotThereError, arguments: Sequence[str]) -> str:
     meant = None
     if "help" in words:
         meant = [command, "--help"]
-    elif error.path in shipped_rubrics() and command in _TAKES_A_RUBRIC:
+    elif error.path in shipped_rubrics() and command in ("grade", "view", "batch"):
         others = [word for word in words if word != error.path]
         meant = [command, *others, "--rubric", error.path]
     elif is_bare:
@@ -198,7 +200,7 @@ def _usage(line: _CommandLine, error: Any) -> str:
     name = " ".join(["grader", *line.words[: line.start]])
     example = re.search(r"^\s*(grader .*)$", line.command.help or "", re.MULTILINE)
     is_incomplete = hasattr(error, "param_type")  # an argument is missing
-    if example is not None and is_incomplete:
+    if example and is_incomplete:
         return f"for example `{example[1]}`"
     option = getattr(error, "option_name", "")
     if option in _EXAMPLES and option in line.options:
@@ -211,7 +213,7 @@ def _usage(line: _CommandLine, error: Any) -> str:
 
 def _correct_hyphens(line: _CommandLine) -> _Correction | None:
     """Write two hyphens where there are dashes, or one hyphen before a long option."""
-    words = list[str]()
+    words = []
     before = ""
     for word in line.words:
         whole = before + word
@@ -243,7 +245,8 @@ def _correct_command(line: _CommandLine) -> _Correction | None:
 
 def _with_command(line: _CommandLine, word: str, rest: list[str]) -> list[str] | None:
     """Return the words with a command in place of a word that is none."""
-    groups, above = line.command.commands, line.words[: line.start]
+    groups = line.command.commands
+    above = line.words[: line.start]
     if word == "grader":
         return rest
     later = [other for other in rest if other in groups]

@@ -1,7 +1,6 @@
 """Grade one submission and save the reports that `--save` names, and the files of `--fix`."""
 
-from collections.abc import Callable, Mapping
-from pathlib import Path
+from collections.abc import Callable
 
 from grader.app.grading import GradeRequest, GradeRun, grade_request, save_reports
 from grader.app.saving import check_saves
@@ -14,8 +13,8 @@ def grade_and_save(request: GradeRequest, warn: Warn, show: Callable[[GradeRun],
     rubric = list_files(request.rubric, request.answers) if request.saves else ()
     check_saves(request.saves, rubric, request.path)
     run = grade_request(request, warn)
-    files: Mapping[Path, bytes] = {}
-    if request.fix is not None and run.fix is not None:
+    files = {}
+    if request.fix and run.fix:
         from grader.app.hints_and_fix import files_to_fix  # late: few ask for it
 
         others = [
@@ -25,7 +24,7 @@ def grade_and_save(request: GradeRequest, warn: Warn, show: Callable[[GradeRun],
         files = files_to_fix(request.fix, request.path, run.report, run.fix, run.besides, others)
     show(run)
     save_reports(request, run)
-    if request.fix is not None and run.fix is not None:
+    if request.fix and run.fix:
         from grader.app.hints_and_fix import write_fix
 
         warn(write_fix(request.fix, request.path, run.report, run.fix, files))

@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import partial
 from math import isfinite, nan
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 from grader.app.baseline import baseline_text, read_baseline, without_known
 from grader.app.ignoring import Selection, without_ignored
@@ -18,23 +18,34 @@ from grader.app.settings import Settings, read_codes, read_settings
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.base.problems import Problem
 from grader.base.processor_time import INSPECT_SECONDS
+from grader.base.records import Named
 from grader.base.text import MAX_NAMED, enumerated, printable_path
+from grader.files.limits import METADATA, is_recording
 from grader.files.tree import overlaid
 from grader.report.formats import InspectFormat, render_inspection
 from grader.report.inspection import InspectedRobot, Inspection, main_root
-from grader.report.invocation import Saves, read_arguments, read_saves
+from grader.report.invocation import (
+    ExitCode,
+    Saves,
+    inspection_exit_code,
+    read_arguments,
+    read_saves,
+)
 from grader.report.repository import find_base, find_folder
 from grader.report.screen import Screen
 from grader.report.writing import Terminal, Warn
 from grader.ros.api import Absent, Configuration, Read, Reading, Release, StatedReleases, Unreadable
 from grader.workspace.api import OpenedWorkspace, open_workspace
 
+if TYPE_CHECKING:
+    from grader.workspace.api import DescribedRecording
+
 _MAX_NAMED = 20
 # The rules of wheels that are on the wrong side, or turn backward, which drive a robot elsewhere.
 _OF_COURSE = ("wheel-axis", "wheel-side")
 
 
-class InspectRequest(NamedTuple):
+class InspectRequest(Named):
     """The options of `grader inspect`."""
 
     path: str  # of a URDF or a workspace; - for a URDF on standard input
@@ -75,11 +86,10 @@ class InspectRequest(NamedTuple):
         return Selection(select, ignore, read_settings(self.path), folder)
 
 
-def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
+def inspect_and_save(request: InspectRequest, terminal: Terminal) -> ExitCode:
     """Show an inspection, and save the reports that `--save` names.
 
-    With `--watch`, do so after every change. Return whether nothing is certainly wrong. Raises
-    GraderError.
+    With `--watch`, do so after every change. Return the exit code. Raises GraderError.
     """
     saves = request.saves
     check_saves(saves, (), request.path)
@@ -107,7 +117,7 @@ def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
 
     own_paths = [file for _, file in saves]
     repeat_on_change([Path(request.path)], own_paths, terminal, INSPECT_SECONDS, work, show)
-    return True
+    return ExitCode.PASSED
 
 
 def _show_and_save(
@@ -116,10 +126,10 @@ def _show_and_save(
     known: frozenset[str] | None,
     screen: Screen,
     show: Callable[[str], None],
-) -> bool:
+) -> ExitCode:
     """Show and save an inspection without what is known of a baseline.
 
-    Return whether nothing else is certainly wrong; what is written to a baseline counts as known.
+    Return the exit code, for which what is written to a baseline counts as known.
     """
     verbose = request.verbose
     texts = {}
@@ -129,10 +139,11 @@ def _show_and_save(
         inspection = without_known(inspection, known)
     for kind, file in request.saves:
         texts[file] = render_inspection(inspection, kind, verbose=verbose)
-    robots = [Path(request.path, robot.path) for robot in inspection.robots]
     show(render_inspection(inspection, request.output_format, screen, verbose=verbose))
-    save_texts(texts, request.path, (*robots, *inspection.besides))
-    return inspection.is_passed or request.write_baseline is not None
+    code = inspection_exit_code(inspection, is_known=request.write_baseline is not None)
+    if code != ExitCode.NOT_GRADED:
+        save_texts(texts, request.path, inspection.besides)
+    return code
 
 
 def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
@@ -158,10 +169,13 @@ def inspect_opened(
     opened: OpenedWorkspace, request: InspectRequest, selection: Selection, warn: Warn
 ) -> Inspection:
     """Return the inspection of a folder or archive that is opened. Raises GraderError."""
-    path, joints, relative_to = request.path, request.joint or (), request.relative_to
+    path = request.path
+    joints = request.joint or ()
+    relative_to = request.relative_to
     read = [robot for robot in opened.robots if isinstance(robot, Read)]
     unread = [robot for robot in opened.robots if isinstance(robot, Unreadable)]
-    if not opened.robots and not (opened.packages or opened.ros1_packages):
+    recordings = _describe_recordings(opened)
+    if not opened.robots and not (opened.packages or opened.ros1_packages or recordings):
         raise InputError(
             f"{printable_path(path)} has neither a URDF nor a package: no file in it has a <robot>"
         )
@@ -176,7 +190,9 @@ def inspect_opened(
         return without_ignored(inspection, opened.whole_tree, _list_texts(chosen), selection)
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
-    problems, extent = opened.package_problems(), opened.extent()
+    problems = opened.package_problems()
+    is_workspace = bool(opened.robots or opened.packages or opened.ros1_packages)
+    extent = opened.extent() if is_workspace else None
     robots = [_inspected(opened, urdf, joints, relative_to, problems) for urdf in read]
     problems += opened.mesh_size_problems()  # last: it takes what is left of the budget
     inspection = Inspection(
@@ -186,10 +202,12 @@ def inspect_opened(
         extent,
         opened.source,
         base,
+        recordings=recordings,
         is_posed=bool(joints) or relative_to is not None,
+        unread=tuple(unread),
     )
     inspection = _with_log(inspection, opened, request.log)
-    return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)
+    return without_ignored(inspection, opened.whole_tree, list(opened.whole_tree.files), selection)
 
 
 def _inspect_file(
@@ -214,6 +232,19 @@ def _inspect_file(
     return without_ignored(inspection, tree, _list_texts(urdf), selection._replace(folder=folder))
 
 
+def _describe_recordings(opened: OpenedWorkspace) -> "tuple[DescribedRecording, ...]":
+    """Return what the recordings show. Raises InputError if nothing else is there to be read."""
+    if not any(is_recording(path) or path.endswith(METADATA) for path in opened.whole_tree.files):
+        return ()
+    from grader.workspace.api import describe_recordings  # late: few workspaces have one
+
+    recordings = tuple(describe_recordings(opened))
+    is_read = any(recording.facts for recording in recordings)
+    if recordings and not (is_read or opened.robots or opened.packages):
+        raise InputError(recordings[0].faults[0])
+    return recordings
+
+
 def _with_log(inspection: Inspection, opened: OpenedWorkspace, log: bytes | None) -> Inspection:
     """Return an inspection with what the files say of a log, also by findings that are ignored."""
     if log is None:
@@ -225,12 +256,12 @@ def _with_log(inspection: Inspection, opened: OpenedWorkspace, log: bytes | None
 
 def _list_texts(urdf: Read) -> list[str]:
     """Return the files that a robot is read from."""
-    return [*dict.fromkeys((urdf.path, *getattr(urdf.reading.source, "documents", ())))]
+    return list(dict.fromkeys((urdf.path, *getattr(urdf.reading.source, "documents", ()))))
 
 
 def _notes(urdf: Read) -> Iterator[str]:
     """Yield that a robot was expanded."""
-    if urdf.is_expanded and urdf.as_it_stands is None:
+    if urdf.is_expanded and not urdf.as_it_stands:
         extent = "" if urdf.loaded.is_certain else "the part that can be determined of "
         yield f"{urdf.path} is xacro: this is {extent}what xacro expands it to"
 
@@ -240,7 +271,7 @@ def _named(name: str, robots: Sequence[Read]) -> Read:
     matches = [robot for robot in robots if f"/{robot.path}".endswith(f"/{name.strip('/')}")]
     if not matches:
         models = [(robot, robot.loaded.robot) for robot in robots]
-        matches = [robot for robot, model in models if model is not None and model.name == name]
+        matches = [robot for robot, model in models if model and model.name == name]
     if len(matches) == 1:
         return matches[0]
     paths = enumerated([robot.path for robot in matches or robots], MAX_NAMED)
@@ -270,16 +301,16 @@ def _inspected(
     frames.
     """
     robot = _configuration(urdf.loaded, joints)
-    if robot is not None and relative_to is None:
+    if robot and relative_to is None:
         relative_to = main_root(robot)
-    elif robot is not None and relative_to is not None and not robot.robot.has_link(relative_to):
+    elif robot and relative_to is not None and not robot.robot.has_link(relative_to):
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
     reading = urdf.loaded._replace(problems=opened.problems_once(urdf, of_packages))
     meshes = opened.load_meshes(urdf)
     inspected = InspectedRobot(urdf.path, reading, robot, relative_to, meshes=meshes)
     driven = opened.driven_joints(urdf)
-    if robot is None or not driven or not all(map(robot.robot.has_joint, driven)):
+    if not robot or not driven or not all(map(robot.robot.has_joint, driven)):
         return inspected
     from grader.ros.api import describe_driving  # late: few robots name their wheels
 
@@ -287,7 +318,7 @@ def _inspected(
     driving = describe_driving(robot, wheels)
     is_course_said = any(problem.rule in _OF_COURSE for problem in of_packages)
     problem = opened.standing_problem(urdf, driving, with_course=not is_course_said)
-    if problem is None:
+    if not problem:
         return replace(inspected, driving=driving.text, wheels=wheels)
     reading = reading._replace(problems=(*reading.problems, problem))
     return replace(inspected, reading=reading, wheels=wheels)
@@ -295,7 +326,7 @@ def _inspected(
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:
     positions = dict(map(_read_position, joints))
-    if urdf.robot is None:
+    if not urdf.robot:
         return None
     try:
         return Configuration(urdf.robot, positions)

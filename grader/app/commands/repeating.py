@@ -168,12 +168,13 @@ def changes(
         wait: Waits for some seconds; if it returns true, the next look counts as a change.
     """
     besides: list[Path] = []
-    seen: _Stamps | None = None
-    before: _Stamps = {}
+    seen = None
+    before = {}
     looks = [math.inf]  # the times of the last two
     is_asked: object = False
     while True:
-        start, began = time.monotonic(), time_ns() - _TICKS
+        start = time.monotonic()
+        began = time_ns() - _TICKS
         now = _stamps([*watched, *besides], own_paths)
         looks = [looks[-1], time.monotonic() - start]
         pause = max(poll, _SHARE * min(looks))  # a look that a busy machine interrupts is longer
@@ -207,7 +208,7 @@ def _stamps(paths: Iterable[Path], own_paths: Collection[str] = ()) -> _Stamps:
         names: Iterable[str] = ()
         try:
             tree = read_folder(path) if path.is_dir() else None
-            names = (*tree.files, *tree.folders) if tree is not None else ()
+            names = (*tree.files, *tree.folders) if tree else ()
         except (InputError, MachineError) as error:
             stamps[str(error)] = None
         files = (path, *(path / name for name in names))

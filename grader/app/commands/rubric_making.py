@@ -21,6 +21,7 @@ from grader.lab.authoring.draft_choice import WITHOUT, DraftChoice
 from grader.lab.authoring.expectations import Omission, Solution
 from grader.lab.authoring.mutant_kinds import KindScore
 from grader.lab.authoring.mutants import Mutant
+from grader.lab.authoring.recording_expectations import read_reference_recording
 from grader.lab.authoring.rubric_test import (
     GROUP,
     MutantOutcome,
@@ -93,18 +94,29 @@ def _split_texts(given: Iterable[str]) -> Iterator[str]:
 
 
 def write_rubric(
-    file: Path, reference: str, warn: Warn, choice: DraftChoice, *, force: bool
+    file: Path,
+    reference: str,
+    warn: Warn,
+    choice: DraftChoice,
+    *,
+    force: bool,
+    recording: Path | None = None,
 ) -> str:
     """Write a rubric of a reference's facts; return what it contains, omits, and the next step.
 
-    Raises GraderError.
+    A recording is in the reference, or it is the reference. Raises GraderError.
     """
     _check_target(file, force=force)
     if reference == STANDARD_INPUT:
         raise GraderError("--from takes a file or folder, which the rubric names as its reference")
     submission = open_with_packages(reference)
-    solution = _solution(submission, reference, warn)
-    made = draft(submission, solution, _rubric_head(file, reference, submission), file, choice)
+    recorded = None
+    if recording:
+        path = os.path.relpath(recording, reference).replace(os.sep, "/")
+        recorded = read_reference_recording(submission, path)
+    solution = _solution(submission, reference, warn, is_recorded=recording is not None)
+    head = _rubric_head(file, reference, submission)
+    made = draft(submission, solution, head, file, choice, recorded)
     if len(made.data) > URDF_LIMIT:
         raise GraderError(
             f"the reference has too many facts for a rubric: {len(made.rubric.criteria)} criteria"
@@ -142,14 +154,16 @@ def _check_target(file: Path, *, force: bool) -> None:
         raise missing_folder(file)
 
 
-def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | None:
-    """Return the robot of the reference, which ROS 2 must load; None of packages without one.
+def _solution(
+    submission: Submission, reference: str, warn: Warn, *, is_recorded: bool
+) -> Solution | None:
+    """Return the robot of the reference, which ROS 2 must load; None of others without one.
 
     Raises GraderError.
     """
     shown = printable_path(reference)
     match submission.urdf:
-        case Absent() if submission.packages:
+        case Absent() if submission.packages or is_recorded:
             return None
         case Absent():
             raise InputError(
@@ -160,7 +174,7 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
             raise InputError(reason)
         case Read(reading=reading, loaded=loaded):
             loading = urdf_loads(loaded)
-            if reading.robot is None or loading.status != "passed":
+            if not reading.robot or loading.status != "passed":
                 reason = loading.mistake if loading.status == "pending" else loading.message
                 advice = f"see `grader inspect {shell_quoted(reference)}`"
                 raise InputError(f"{shown} is no reference solution: {reason} ({advice})")
@@ -183,8 +197,9 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
 def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:
     words = re.sub(r"[\s_-]+", " ", printable(file.stem)).strip() or "lab"
     place = _relative(Path(reference), file.parent)
-    package, path = submission.package, submission.path or ""
-    if package is not None and package.holds(path):
+    package = submission.package
+    path = submission.path or ""
+    if package and package.holds(path):
         path = path.removeprefix(package.path(""))
     names = tuple(lab_package.name for lab_package in submission.lab_packages.values())
     schema = f"./{_SCHEMA}" if (file.parent / _SCHEMA).is_file() else ""
@@ -218,7 +233,7 @@ def _result_lines(file: Path, made: RubricDraft, drawn: Path | None) -> Iterator
             f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move "
             "both together"
         )
-    if drawn is not None:
+    if drawn:
         yield f"wrote {printable_path(drawn)}: what the reference connects, as Mermaid"
     yield from (f"omitted: {line}" for line in _omission_lines(made.omissions))
     paths, count = Trial(made.rubric).unexamined()
@@ -253,7 +268,7 @@ def test_rubric(
     """
     least = read_threshold(fail_under)[0] if fail_under is not None else 0
     rubric = load_named(name)
-    samples = read_samples(folder) if folder is not None else None
+    samples = read_samples(folder) if folder else None
     with (
         terminal.show_class(f"Testing {rubric.id}") as show,
         Processes(processors(), _SECONDS, preload=PRELOAD) as executor,

@@ -35,7 +35,7 @@ def copy(name: str, folder: Path) -> str:
     from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
 
     file = shipped_rubrics().get(name)
-    if file is None:
+    if not file:
         raise GraderError(
             f"{printable_path(name)} is not a rubric of the grader: {', '.join(shipped_rubrics())}"
         )
@@ -44,7 +44,7 @@ def copy(name: str, folder: Path) -> str:
         for source in list_files(name)
         if source.exists()
     }
-    if there := [*filter(os.path.lexists, copies.values())]:
+    if there := list(filter(os.path.lexists, copies.values())):
         raise GraderError(f"{printable_path(there[0])} exists already: nothing was copied")
     for source, target in copies.items():
         make_folder(target.parent)
@@ -86,7 +86,7 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
     for message in likely_mistakes(rubric):
         warn(printable(f"warning: {message}"))
     summary = f"{rubric.id}: {rubric_size(rubric)}, no mistakes found"
-    if rubric.solution is None:
+    if not rubric.solution:
         return f"{summary}\n", ExitCode.PASSED
     failures = reference_failures(rubric)
     if failures.is_failed:
@@ -110,14 +110,14 @@ def _lines_on_the_rest(name: str, warn: Warn) -> list[str]:
     path = find_rubric(name)
     try:
         rubric = read_correct_rows(read_capped(path, advice=""), path)
-        if rubric is None:
+        if not rubric:
             return []
         for message in likely_mistakes(rubric):
             warn(printable(f"warning: {message}"))
         if rubric.solution is None:
             return []
         failures = reference_failures(rubric)
-        return [*map(printable, failures.lines)] if failures.is_failed else []
+        return list(map(printable, failures.lines)) if failures.is_failed else []
     except GraderError:  # there is no more to say of a file or reference that cannot be read
         return []
 
@@ -147,7 +147,7 @@ def _next_step(rubric: "Rubric") -> str:
     asked = (
         criterion for criterion in rubric.criteria if criterion.check.function in MANUAL_CHECKS
     )
-    manual = [criterion for criterion in asked if criterion.adjustment is None]
+    manual = [criterion for criterion in asked if not criterion.adjustment]
     points = worth(manual)
     step = (
         "upload it under Configure Autograder; autograder points: "

@@ -84,13 +84,13 @@ class RobotPages:
         """Tell the pages that wait for a change that there will be none."""
         with self._changed:
             self.is_ended = True
-            waiting = [*self._waiting]
+            waiting = list(self._waiting)
             self._changed.notify_all()
         self._asked.set()
         for thread in waiting:
             thread.join(1.0)
 
-    def __call__(self, path: tuple[str, ...], body: bytes | None) -> Response:
+    def __call__(self, path: Sequence[str], body: bytes | None) -> Response:
         """Return the response to a request."""
         if body is not None:
             return self._change("/".join(path), body)
@@ -101,7 +101,7 @@ class RobotPages:
                 data = self._store.data(address)
                 return Response(data, "application/octet-stream") if data else _NOT_FOUND
             case (address,):
-                if self.link is not None:
+                if self.link:
                     with suppress(OSError):
                         self.link.unlink()
                 page = self._page(address)
@@ -139,10 +139,10 @@ class RobotPages:
             if path is None:
                 return ""
             now = next((robot for robot in self._files.robots if robot.path == path), None)
-            is_loaded = self._error is None and now is not None and now.is_loaded
+            is_loaded = not self._error and now is not None and now.is_loaded
             shown = self._loaded.get(path, now)
             graphs = self._files.graphs
-            assert shown is not None  # each path is that of a robot that was read
+            assert shown  # each path is that of a robot that was read
             if shown.meshes is not None:
                 self._store.lend(shown.meshes)
             links = []
@@ -155,22 +155,24 @@ class RobotPages:
                 shown.arguments,
                 self._files.notes,
                 is_broken=not is_loaded,
-                broken=self._broken(now) if shown is not now or self._error is not None else (),
+                broken=self._broken(now) if shown is not now or self._error else (),
                 store=self._store,
                 meshes=shown.meshes,
                 log=self._files.log,
-                graph=_GRAPH if graphs is not None and graphs.launches else "",
+                graph=_GRAPH if graphs and graphs.launches else "",
+                playback=self._files.playback,
             )
             return shown.render(viewing)
 
     def _graph(self, address: str) -> str:
         """Return the page of the graph of a launch file; empty for another address."""
         with self._changed:
-            number, graphs = self.number, self._files.graphs
+            number = self.number
+            graphs = self._files.graphs
             robots = [RobotLink(_address(path), path, is_shown=False) for path in self._paths]
-        if graphs is None:
+        if not graphs:
             return ""
-        links: list[RobotLink] = []
+        links = []
         shown = ""
         for place, path in enumerate(graphs.launches):
             own_address = f"{_GRAPH}{_address(path)}" if place else _GRAPH
@@ -183,9 +185,9 @@ class RobotPages:
 
     def _broken(self, robot: ViewedRobot | None) -> Sequence[ProblemCard]:
         """Return what is wrong with a robot as the files are now."""
-        if self._error is not None:
+        if self._error:
             return [ProblemCard("error", line) for line in str(self._error).split("\n")]
-        if robot is None:
+        if not robot:
             return [ProblemCard("error", "No robot is read from this file any more.")]
         return robot.broken
 
@@ -281,6 +283,7 @@ def view_in_browser(
     """
     gc.enable()  # unlike other commands, this one may run for hours
     pages = RobotPages()
+    pages.log = request.log
     with LocalServer(pages, port, MAX_LOG_BODY) as server:
         # Some browsers see the current folder, but no folder for temporary files.
         pages.link = Path(f"open-view-{server.port}.html")

@@ -9,12 +9,13 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.app.commands.inspect_urdf import InspectRequest, open_and_inspect
+from grader.app.commands.inspect_urdf import InspectRequest, inspect_opened, open_and_inspect
 from grader.app.grading import GradeRequest, grade_request
 from grader.base.errors import GraderError, InputError
 from grader.base.problems import Problem
 from grader.base.source import SourceOf
 from grader.base.text import printable_path
+from grader.files.tree import Tree, overlaid
 from grader.report.formats import Format, InspectFormat
 from grader.report.inspection import InspectedRobot, Inspection
 from grader.report.pages.graph_page import graph_html
@@ -29,13 +30,17 @@ from grader.report.pages.viewing import (
 )
 from grader.report.shown_graph import ShownGraph
 from grader.ros.api import Read, Unreadable
+from grader.workspace.api import read_workspace
 
 if TYPE_CHECKING:
     from grader.lab.grading.report import Report
+    from grader.report.drawing.playback import Playback
     from grader.ros.api import MeshLoader, Reading
     from grader.workspace.api import OpenedWorkspace
 
 _MAX_SHOWN = 5  # problems that break a robot
+_DESCRIBED = "robot_description.urdf"  # the recorded one
+_Notes = dict[str, None]  # each once
 
 
 class ViewRequest(NamedTuple):
@@ -45,6 +50,7 @@ class ViewRequest(NamedTuple):
     rubric: str  # an id or a file; empty for the problems of an inspection
     arg: Sequence[str]  # NAME=VALUE, of xacro
     max_size: int  # of a URDF, in bytes
+    log: bytes | None = None  # the output of a terminal, at first
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +84,7 @@ class ViewedFiles(NamedTuple):
     besides: Sequence[Path]  # the files that were read besides a single one
     graphs: _ViewedGraphs | None = None
     log: Sequence[LogCard] | None = None  # what is said of a log; None without one
+    playback: "Playback | None" = None  # the recording that moves them
 
 
 def read_robots(
@@ -89,17 +96,25 @@ def read_robots(
     """
     if request.path in ("", "-"):
         raise GraderError("view takes a file or folder: standard input is read only once")
-    notes: dict[str, None] = {}
+    notes: _Notes = {}
     arg = [*request.arg, *(f"{name}={value}" for name, value in tried.items())]
     read = _graded if request.rubric else _inspected
     return read(request, arg, log, notes)
 
 
 def _inspected(
-    request: ViewRequest, arg: Sequence[str], log: bytes | None, notes: dict[str, None]
+    request: ViewRequest, arg: Sequence[str], log: bytes | None, notes: _Notes
 ) -> ViewedFiles:
     """Return the robots that an inspection finds."""
-    inspection, opened = open_and_inspect(_inspection(request, arg, log), notes.setdefault)
+    inspected = _inspection(request, arg, log)
+    inspection, opened = open_and_inspect(inspected, notes.setdefault)
+    playback = _find_playback(opened.whole_tree, log)
+    descriptions = playback.recording.descriptions if playback else ()
+    if not inspection.robots and descriptions:
+        tree = overlaid(opened.whole_tree, {_DESCRIBED: descriptions[0].encode()})
+        opened = read_workspace(tree, opened.id, request.max_size, {})
+        selection = inspected.selection(Path(request.path))
+        inspection = inspect_opened(opened, inspected, selection, notes.setdefault)
     if not inspection.robots:
         raise InputError(next(iter(notes), _no_robot(request.path)))
     robots = [_inspected_robot(robot, inspection) for robot in inspection.robots]
@@ -107,7 +122,18 @@ def _inspected(
     if not opened.is_single:
         render = partial(_graph_page, opened, inspection)
         graphs = _ViewedGraphs(opened.launch_files(), render)
-    return ViewedFiles(robots, [*notes], inspection.besides, graphs, _of_log(inspection))
+    cards = _of_log(inspection)
+    return ViewedFiles(robots, list(notes), inspection.besides, graphs, cards, playback)
+
+
+def _find_playback(tree: Tree, log: bytes | None) -> "Playback | None":
+    """Return what plays the longest recording among some files; None without one."""
+    # Late: `render_html` of a report needs none.
+    from grader.report.drawing.playback import Playback
+    from grader.ros.api import read_longest_recording
+
+    recording = read_longest_recording(tree)
+    return Playback(recording, log) if recording else None
 
 
 def _of_log(inspection: Inspection) -> Sequence[LogCard] | None:
@@ -139,8 +165,7 @@ def _graph_page(
 ) -> str:
     """Return the page of the graph of a launch file."""
     launches = tuple(opened.launch_files())
-    shown = ShownGraph(opened.launch_graph(launch), inspection, launches)
-    return graph_html(shown, viewing)
+    return graph_html(ShownGraph(opened.launch_graph(launch), inspection, launches), viewing)
 
 
 def _inspected_robot(robot: InspectedRobot, inspection: Inspection) -> ViewedRobot:
@@ -156,7 +181,7 @@ def _inspected_robot(robot: InspectedRobot, inspection: Inspection) -> ViewedRob
 
 
 def _graded(
-    request: ViewRequest, arg: Sequence[str], log: bytes | None, notes: dict[str, None]
+    request: ViewRequest, arg: Sequence[str], log: bytes | None, notes: _Notes
 ) -> ViewedFiles:
     """Return the robot that is graded."""
     run = grade_request(
@@ -179,14 +204,16 @@ def _graded(
         notes.setdefault,
     )
     robots = [_graded_robot(run.report, request.path)]
-    graphs, cards = None, None
+    graphs = None
+    cards = None
     has_launch = any(package.launch_files for package in run.report.submission.packages)
     if has_launch or log is not None:
         inspection, opened = open_and_inspect(_inspection(request, (), log), lambda _: None)
         cards = _of_log(inspection)
         if has_launch:
             graphs = _ViewedGraphs(opened.launch_files(), partial(_graph_page, opened, inspection))
-    return ViewedFiles(robots, [*notes], run.besides, graphs, cards)
+    playback = _find_playback(run.report.submission.tree, log)
+    return ViewedFiles(robots, list(notes), run.besides, graphs, cards, playback)
 
 
 def _graded_robot(report: "Report", path: str) -> ViewedRobot:

@@ -51,7 +51,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> None:
     rubric = list_files(request.rubric, request.answers) if saves else ()
     check_saves(saves, rubric, request.path)
     _ = request.threshold  # refuse a wrong one at once
-    last: Report | None = None
+    last = None
 
     def work() -> tuple[GradeRun, Sequence[Path]]:
         run = grade_request(request, terminal.warn)
@@ -72,7 +72,7 @@ def _watched(request: GradeRequest) -> list[Path]:
     Raises GraderError.
     """
     refuse_watching(request.path, request.output_format)
-    if request.fix is not None:
+    if request.fix:
         raise GraderError("--watch writes no fix: use --fix without it")
     watched = files_to_watch(request.path, request.rubric)
     if len(watched) == 1:
@@ -94,8 +94,8 @@ def files_to_watch(path: str, rubric: str) -> list[Path]:
 def _show(report: Report, last: Report | None, terminal: Terminal, *, verbose: bool) -> None:
     """Show the report, then what changed since the last one."""
     text = render(report, Format.TERMINAL, screen=terminal.screen(), verbose=verbose)
-    changed = comparison_lines(last, report) if last is not None else ()
-    show_round(text, terminal, changed, is_first=last is None, is_whole=verbose)
+    changed = comparison_lines(last, report) if last else ()
+    show_round(text, terminal, changed, is_first=not last, is_whole=verbose)
 
 
 def comparison_lines(before: Report, after: Report) -> list[str]:
@@ -119,7 +119,7 @@ def comparison_lines(before: Report, after: Report) -> list[str]:
 def _change(old: Result | None, new: Result) -> str:
     """Return how a criterion changed; empty if it did not."""
     status = new.outcome.status
-    if old is None or old.outcome.status != status:
+    if not old or old.outcome.status != status:
         return _CHANGES["given" if status == "failed" and new.points else status]
     is_other = old.points != new.points or (
         new.outcome.status != "passed" and old.outcome.message != new.outcome.message

@@ -2,7 +2,6 @@
 
 from grader.app.editor.look import Graded, ProvenFix
 from grader.app.hints_and_fix import add_hints
-from grader.base.source import Edits
 from grader.files.tree import Tree
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric_files import load_named
@@ -25,9 +24,9 @@ def grade_files(name: str, tree: Tree, identity: str) -> Graded:
     submission = make_submission(tree, identity, rubric.lab)
     report = grade(rubric, submission)
     report, _ = add_hints(report, submission, None, lambda _: None, is_fixed=False)
-    fixes: dict[Edits, ProvenFix] = {}
+    fixes = {}
     for result in report.results:
         hint = result.hint
-        if hint is not None and hint.edits:
+        if hint and hint.edits:
             fixes[hint.edits] = ProvenFix(hint.message, hint.at, hint.edits)
     return Graded(tuple(mistakes_in_report(report)), tuple(fixes.values()))

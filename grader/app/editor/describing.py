@@ -2,33 +2,34 @@
 
 from collections.abc import Collection, Iterator, Sequence
 
-from lsprotocol import types as lsp
+from lsprotocol.types import Hover, MarkupContent, MarkupKind
 
+from grader.app.editor.completions import typed_place
 from grader.app.editor.look import Look
-from grader.app.editor.parameter_keys import parameter_key
 from grader.app.editor.places import TextPlace
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated, printable
 from grader.report.inspection import joint_text, main_root, pose_text
 from grader.report.writers.escaped_markdown import code, escape, escape_words
 from grader.ros.api import Configuration
+from grader.workspace.api import KEY, offered_at
 
 _MAX_NAMED = 3  # places
 
 
-def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
+def hover(look: Look, place: TextPlace) -> Hover | None:
     """Return what is known of the name at a place; None where there is none."""
     name = look.names.at(*place.triple)
-    if name is None:
+    if not name:
         rows = _parameter_rows(look, place)
-        return lsp.Hover(_markdown(rows)) if rows else None
+        return Hover(_markdown(rows)) if rows else None
     same = look.names.same(name)
     defined = [
         same_name.location.file_and_line for same_name in same if same_name.role == "definition"
     ]
     where = "defined nowhere in this workspace"
     if defined:
-        where = f"defined at {enumerated([*dict.fromkeys(defined)], _MAX_NAMED)}"
+        where = f"defined at {enumerated(dict.fromkeys(defined), _MAX_NAMED)}"
     uses = {same_name.location for same_name in same if same_name.role == "use"}
     used = counted(len(uses), "time")
     rows = [f"**{name.kind}** {_code(name.name)}: {_plain(where)}; used {used}"]
@@ -40,26 +41,25 @@ def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
     rows += (f"value: {_code(value)}" for value in look.names.values(name)[:_MAX_NAMED])
     if name.kind == "parameter":
         rows += _parameter_rows(look, place)
-    return lsp.Hover(_markdown(rows), place.ranges(look).range(name.location))
+    return Hover(_markdown(rows), place.ranges(look).range(name.location))
 
 
 def _parameter_rows(look: Look, place: TextPlace) -> list[str]:
-    """Return what is known of the parameter whose key is in a line of YAML; nothing elsewhere."""
-    if not place.path.endswith((".yaml", ".yml")):
+    """Return what is known of the parameter whose key is at a place; nothing elsewhere."""
+    line = place.text_line
+    end = line.find(":", place.column - 1)
+    typed = typed_place(place._replace(column=end + 1)) if end >= 0 else None
+    if not typed or typed.holder.slot != KEY:
         return []
-    lines = place.lines.text.split("\n")[: place.line]
-    key = parameter_key(lines[:-1], lines[-1])
-    text = look.names.parameter_text(key.node, key.name) if key is not None else ""
-    if key is None or not text:
-        return []
-    return [
-        f"**parameter** {_code(key.name)}",
-        *(escape_words(printable(row)) for row in text.split("\n")),
-    ]
+    for offer in offered_at([look.opened.workspace], typed):
+        if offer.name == typed.typed and offer.text:
+            text = escape_words(printable(f"{offer.detail}\n{offer.text}"))
+            return [f"**parameter** {_code(offer.name)}", *text.split("\n")]
+    return []
 
 
-def _markdown(rows: Sequence[str]) -> lsp.MarkupContent:
-    return lsp.MarkupContent(lsp.MarkupKind.Markdown, "\n\n".join(rows))
+def _markdown(rows: Sequence[str]) -> MarkupContent:
+    return MarkupContent(MarkupKind.Markdown, "\n\n".join(rows))
 
 
 def _code(name: str) -> str:

@@ -31,6 +31,7 @@ _ONE_MISTAKE = (
     ("RVZ004", "REF022"),  # a path that only one machine has
     ("", "URDF095"),  # what Python's XML parser refuses, which ROS 2 accepts
 )
+_Diagnostics = dict[str, list[lsp.Diagnostic]]  # by path
 
 
 @dataclass
@@ -55,31 +56,33 @@ class _Shown:
         return self.finding.message
 
 
-def make_diagnostics(
-    look: Look, root: Path, graded: Sequence[Mistake] = ()
-) -> dict[str, list[lsp.Diagnostic]]:
+_ShownRows = list[_Shown]
+
+
+def make_diagnostics(look: Look, root: Path, graded: Sequence[Mistake] = ()) -> _Diagnostics:
     """Return what is wrong with the files of a folder, by their paths.
 
     These are the problems, and the mistakes that lose points of a rubric. What a problem costs is
     said with it.
     """
     ranges = TextRanges(look, root)
-    shown: dict[str, list[lsp.Diagnostic]] = {}
+    shown: _Diagnostics = {}
     problems = _join_same(_join_assumptions(look.findings), ranges)
     for one in _join_mistakes(problems, graded, look.opened.source):
         path, at = place_in_repository(one.finding, Base())
         if path not in look.tree.files:
-            path, at = next(iter(look.tree.files), path), None
+            path = next(iter(look.tree.files), path)
+            at = None
         of_file = shown.setdefault(path, [])
         if len(of_file) < _MAX_SHOWN:
             of_file.append(_diagnostic(look, ranges, one, at or Location(path, 1, 1)))
     return shown
 
 
-def _join_assumptions(findings: Iterable[Finding]) -> list[_Shown]:
+def _join_assumptions(findings: Iterable[Finding]) -> _ShownRows:
     """Return problems, each with what is assumed because of it."""
-    shown: list[_Shown] = []
-    assumed: list[_Shown] = []
+    shown = []
+    assumed = []
     for finding in findings:
         if finding.rule.id == RECOVERED.code:
             assumed.append(_Shown(finding))
@@ -90,20 +93,21 @@ def _join_assumptions(findings: Iterable[Finding]) -> list[_Shown]:
         at = one.finding.location
         hosts = [candidate for candidate in shown if _may_be_cause(candidate.finding, at)]
         host = min(hosts, key=lambda candidate: _distance(candidate.finding, at), default=None)
-        if host is None:
+        if not host:
             alone.append(one)
         else:
             host.notes.append((at, one.finding.message))
-    return [*shown, *alone]
+    return shown + alone
 
 
-def _join_same(shown: Iterable[_Shown], ranges: TextRanges) -> list[_Shown]:
+def _join_same(shown: Iterable[_Shown], ranges: TextRanges) -> _ShownRows:
     """Return problems, each with the others that the same mistake makes."""
-    kept: list[_Shown] = []
+    kept = []
     by_cause: dict[tuple[str, str, str], _Shown] = {}
-    by_line: dict[tuple[str, int], list[_Shown]] = {}
+    by_line: dict[tuple[str, int], _ShownRows] = {}
     for one in shown:
-        rule, cause = one.finding.rule, one.finding.cause
+        rule = one.finding.rule
+        cause = one.finding.cause
         host = by_cause.setdefault((rule.id, rule.name, cause), one) if cause else one
         of_line = by_line.setdefault(one.finding.location[:2], [])
         if host is one:
@@ -121,7 +125,8 @@ def _join(host: _Shown, other: _Shown, ranges: TextRanges) -> None:
     """Add a problem to one that the same mistake makes; the word is the shorter one of both."""
     host.joined.append(host.finding)
     host.joined.append(other.finding)
-    first, second = host.finding, other.finding
+    first = host.finding
+    second = other.finding
     codes = (second.rule.id, first.rule.id)
     if codes in _ONE_MISTAKE or ("", first.rule.id) in _ONE_MISTAKE:
         first, second = second, first
@@ -140,7 +145,8 @@ def _join(host: _Shown, other: _Shown, ranges: TextRanges) -> None:
 
 def _is_one_mistake(one: _Shown, other: _Shown, ranges: TextRanges) -> bool:
     """Return whether two problems of a line are at one word, and one mistake makes both."""
-    first, second = one.finding, other.finding
+    first = one.finding
+    second = other.finding
     codes = {first.rule.id, second.rule.id}
     if len(codes) == 1:
         calls = first.location.calls, second.location.calls
@@ -148,7 +154,8 @@ def _is_one_mistake(one: _Shown, other: _Shown, ranges: TextRanges) -> bool:
     is_known = any(codes == {*pair} or (not pair[0] and pair[1] in codes) for pair in _ONE_MISTAKE)
     if not is_known:
         return False
-    at, beside = ranges.range(first.location), ranges.range(second.location)
+    at = ranges.range(first.location)
+    beside = ranges.range(second.location)
     return at.start <= beside.end and beside.start <= at.end
 
 
@@ -169,16 +176,17 @@ def _distance(finding: Finding, at: Location) -> tuple[bool, bool, int]:
 
 def _join_mistakes(
     shown: Sequence[_Shown], graded: Iterable[Mistake], source_of: SourceOf
-) -> list[_Shown]:
+) -> _ShownRows:
     """Add to each problem the mistakes that report it, and to others the warnings.
 
     The warnings are at the same attribute of a robot as the other mistake. Return both.
     """
-    left, others = [*shown], []
+    left = list(shown)
+    others = []
     for mistake in graded:
         finding = mistake.finding
         one = next((reported for reported in left if reported.is_reported_by(mistake)), None)
-        if one is None:
+        if not one:
             one = _Shown(finding)
             others.append(one)
             for same in [same for same in left if _is_same_word(same.finding, finding, source_of)]:
@@ -192,7 +200,7 @@ def _join_mistakes(
             one.costs.append(f"{mistake.cost}: {mistake.names}")
         for other in mistake.besides:
             one.notes.append((other.location, f"{other.rule.id}: {other.message}"))
-    return [*left, *others]
+    return left + others
 
 
 def _is_same_word(problem: Finding, criterion: Finding, source_of: SourceOf) -> bool:
@@ -204,7 +212,7 @@ def _is_same_word(problem: Finding, criterion: Finding, source_of: SourceOf) -> 
     if problem.severity == "error" or at != criterion.location:
         return False
     source = source_of(at.path)
-    if source is None or not at.path.endswith(ROBOT_ENDINGS):
+    if not source or not at.path.endswith(ROBOT_ENDINGS):
         return False
     return source.line(at.line)[at.column - 1 : at.column] not in ("", "<")
 
@@ -235,7 +243,7 @@ def _related(
         text = f"the macro {name} is called here"
         related_places.append(lsp.DiagnosticRelatedInformation(ranges.place(call), text))
     related = shown.finding.related
-    if related is not None:
+    if related:
         text = "this is what it is compared with"
         related_places.append(lsp.DiagnosticRelatedInformation(ranges.place(related), text))
     for at, text in shown.notes:

@@ -49,7 +49,7 @@ class EditedFiles:
         """
         self.root = root
         self._skipped = dict(skipped or {})
-        self._slow: dict[str, bytes | None] = {}  # the skipped texts
+        self._slow = {}  # the skipped texts
         for path, text in self._skipped.items():
             if text.slow is not None:
                 self._slow[path] = text.slow.encode("utf-8", "surrogatepass")
@@ -60,7 +60,7 @@ class EditedFiles:
     @property
     def typed(self) -> list[str]:
         """The paths of the files that are open in the editor."""
-        return [*self._typed]
+        return list(self._typed)
 
     def type(self, path: str, text: str) -> None:
         """Set the text of an open file, by its path in the folder."""
@@ -76,12 +76,13 @@ class EditedFiles:
 
     def tree(self) -> Tree:
         """Return the files as they are now. Raises InputError."""
-        if self._on_disk is None:
+        if not self._on_disk:
             opened_tree = open_tree(self.root)
-            if opened_tree is None:
+            if not opened_tree:
                 raise InputError(f"{self.root.name} is no folder")
             self._on_disk = self._keep_contents(without_git_ignored(opened_tree, self.root))
-        on_disk, typed = self._on_disk, dict[str, bytes | None]()
+        on_disk = self._on_disk
+        typed = {}
         for path, data in dict(self._typed).items():
             if path in on_disk.files or not ignored_part(path):
                 typed[path] = data
@@ -138,7 +139,7 @@ class EditedFiles:
 
 
 def _read_once(file: File) -> Callable[..., bytes]:
-    whole: bytes | None = None
+    whole = None
 
     def read(limit: int, *, first: bool = False) -> bytes:
         nonlocal whole

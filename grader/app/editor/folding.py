@@ -3,35 +3,38 @@
 import re
 from collections.abc import Iterator
 
-from lsprotocol import types as lsp
+from lsprotocol.types import FoldingRange, FoldingRangeKind
+
+from grader.base.patterns import on_use
+from grader.base.text import indent_of
 
 _XML = (".urdf", ".xacro", ".xml", ".sdf", ".srdf", ".world", ".launch")
-_INDENTED = (".yaml", ".yml", ".rviz", ".py")
-_TAG = re.compile(
+_TAG = on_use(
     r"<!--.*?(?:-->|\Z)|<(?P<end>/?)(?P<name>[\w:.-]++)(?:\"[^\"<]*+\"|'[^'<]*+'|[^<>\"'])*+>",
     re.DOTALL,
 )
 _MOST = 5_000
 
 
-def folding_ranges(path: str, text: str) -> list[lsp.FoldingRange] | None:
+def folding_ranges(path: str, text: str) -> list[FoldingRange] | None:
     """Return what can be folded in a text; None for a file of which an editor knows it itself."""
     if path.endswith(_XML):
-        return [*_of_elements(text)][:_MOST]
-    if path.endswith(_INDENTED):
-        return [*_of_indents(text)][:_MOST]
+        return list(_of_elements(text))[:_MOST]
+    if path.endswith((".yaml", ".yml", ".rviz", ".py")):
+        return list(_of_indents(text))[:_MOST]
     return None
 
 
-def _of_elements(text: str) -> Iterator[lsp.FoldingRange]:
+def _of_elements(text: str) -> Iterator[FoldingRange]:
     """Yield the elements and comments that have several lines, also of a broken file."""
     lines = _Lines(text)
     opened: list[tuple[str, int]] = []
     for tag in _TAG.finditer(text):
-        first, last = lines.number(tag.start()), lines.number(tag.end() - 1)
+        first = lines.number(tag.start())
+        last = lines.number(tag.end() - 1)
         name = tag["name"]
         if name is None:
-            yield from _range(first, last, lsp.FoldingRangeKind.Comment)
+            yield from _range(first, last, FoldingRangeKind.Comment)
         elif tag["end"]:
             names = [opened_name for opened_name, _ in opened]
             if name in names:
@@ -44,7 +47,7 @@ def _of_elements(text: str) -> Iterator[lsp.FoldingRange]:
             opened.append((name, first))
 
 
-def _of_indents(text: str) -> Iterator[lsp.FoldingRange]:
+def _of_indents(text: str) -> Iterator[FoldingRange]:
     """Yield the lines that are followed by others with more blanks before them."""
     opened: list[tuple[int, int]] = []
     last = -1
@@ -52,7 +55,7 @@ def _of_indents(text: str) -> Iterator[lsp.FoldingRange]:
         words = line.strip()
         if not words or words.startswith("#"):
             continue
-        indent = len(line) - len(line.lstrip())
+        indent = len(indent_of(line))
         while opened and opened[-1][0] >= indent:
             yield from _range(opened.pop()[1], last)
         opened.append((indent, number))
@@ -61,18 +64,18 @@ def _of_indents(text: str) -> Iterator[lsp.FoldingRange]:
         yield from _range(number, last)
 
 
-def _range(
-    first: int, last: int, kind: lsp.FoldingRangeKind | None = None
-) -> Iterator[lsp.FoldingRange]:
+def _range(first: int, last: int, kind: FoldingRangeKind | None = None) -> Iterator[FoldingRange]:
     if last > first:
-        yield lsp.FoldingRange(first, last, kind=kind)
+        yield FoldingRange(first, last, kind=kind)
 
 
 class _Lines:
     """The numbers of lines of offsets that are asked for in their order."""
 
     def __init__(self, text: str) -> None:
-        self._text, self._offset, self._number = text, 0, 0
+        self._text = text
+        self._offset = 0
+        self._number = 0
 
     def number(self, offset: int) -> int:
         """Return the number of the line of an offset, from 0."""

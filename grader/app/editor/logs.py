@@ -25,14 +25,14 @@ def explain(sessions: Iterable[EditorSession], log: str) -> list[str]:
         except (GraderError, SupersededError):
             continue
         for answer in explain_log(look.opened, look.problems, data):
-            lines = explained if answer.location is not None else others
+            lines = explained if answer.location else others
             lines[_line(session, answer)] = None
     return [*explained, *others] or [NO_FAILURE]
 
 
 def _line(session: EditorSession, answer: LogAnswer) -> str:
     at = answer.location
-    if at is not None:
+    if at:
         path = (session.files.root / at.path).as_posix()
         answer = answer._replace(location=at._replace(path=path))
     return log_line(answer)

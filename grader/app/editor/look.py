@@ -31,8 +31,8 @@ class ProvenFix(NamedTuple):
 class Graded(NamedTuple):
     """The mistakes that cost points, and the edits that the rubric's hints show."""
 
-    mistakes: tuple[Mistake, ...] = ()
-    fixes: tuple[ProvenFix, ...] = ()
+    mistakes: Sequence[Mistake] = ()
+    fixes: Sequence[ProvenFix] = ()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -41,10 +41,42 @@ class Look:
 
     tree: Tree
     opened: OpenedWorkspace
-    findings: Sequence[Finding]
-    problems: Sequence[Problem]  # what is wrong, also what is ignored
+    selection: Selection
     grade: Callable[[Tree], Graded]
     again: "Callable[[Tree], Look]"  # looks at other files instead
+    # Gives the last look in which a file had no error, if it has one now.
+    find_clean: "Callable[[str], Look | None]"
+
+    @cached_property
+    def _inspection(self) -> Inspection:
+        """What `grader inspect` says of the files."""
+        opened = self.opened
+        package_problems = tuple(opened.package_problems())
+        robots = []
+        for robot in opened.robots:
+            if isinstance(robot, Read):
+                problems = opened.problems_once(robot, package_problems, with_assumptions=True)
+                robots.append(InspectedRobot(robot.path, robot.loaded._replace(problems=problems)))
+        return Inspection(
+            opened.id, tuple(robots), package_problems, opened.extent(), opened.source
+        )
+
+    @cached_property
+    def findings(self) -> Sequence[Finding]:
+        """What is wrong, and not ignored."""
+        files = list(self.tree.files)
+        shown = without_ignored(self._inspection, self.opened.whole_tree, files, self.selection)
+        return findings_in_inspection(shown)
+
+    @property
+    def problems(self) -> Sequence[Problem]:
+        """What is wrong, also what is ignored."""
+        return self._inspection.problems
+
+    def has_errors(self, path: str) -> bool:
+        """Return whether a file has errors."""
+        errors = (each.location for each in self.findings if each.severity == "error")
+        return any(location.path == path for location in errors)
 
     @cached_property
     def names(self) -> NamePlaces:
@@ -65,7 +97,7 @@ class Look:
         robots_by_path = {}
         for robot in self.opened.robots:
             model = robot.loaded.robot if isinstance(robot, Read) else None
-            if model is not None:
+            if model:
                 robots_by_path[robot.path] = Configuration(model)
         return robots_by_path
 
@@ -77,8 +109,9 @@ def look_at(
     memory: Memory,
     grade: Callable[[Tree], Graded],
     again: Callable[[Tree], Look],
+    find_clean: Callable[[str], Look | None],
 ) -> Look:
-    """Look at the files of a folder as `grader inspect` does.
+    """Look at the files of a folder as `grader inspect` does; problems are found when asked for.
 
     Args:
         tree: The files.
@@ -87,19 +120,7 @@ def look_at(
         memory: What is kept of the look before.
         grade: Grades the files when it is asked for.
         again: Looks at other files.
+        find_clean: Gives the last look in which a file had no error.
     """
     opened = read_workspace(tree, tree.name, URDF_LIMIT, {}, memory, settings.stated)
-    package_problems = tuple(opened.package_problems())
-    robots = []
-    for robot in opened.robots:
-        if isinstance(robot, Read):
-            problems = opened.problems_once(robot, package_problems, with_assumptions=True)
-            reading = robot.loaded._replace(problems=problems)
-            robots.append(InspectedRobot(robot.path, reading))
-    extent = opened.extent()
-    inspection = Inspection(opened.id, tuple(robots), package_problems, extent, opened.source)
-    selection = Selection(settings=settings, folder=root)
-    shown = without_ignored(inspection, opened.whole_tree, [*tree.files], selection)
-    memory.forget_unused()
-    findings = findings_in_inspection(shown)
-    return Look(tree, opened, findings, tuple(inspection.problems), grade, again)
+    return Look(tree, opened, Selection(settings=settings, folder=root), grade, again, find_clean)

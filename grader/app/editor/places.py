@@ -1,21 +1,16 @@
 """Where a name is defined, and where it is used."""
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from lsprotocol import types as lsp
+from lsprotocol.types import DocumentHighlight, DocumentHighlightKind, DocumentLink, Location
 
 from grader.app.editor.look import Look
 from grader.app.editor.text_ranges import Lines, TextRanges
-from grader.base.errors import InputError
-from grader.base.source import Source
-from grader.files.reading import read_capped
-from grader.files.tree import overlaid
 
-_MAX_ERRORS = 3
-_MAX_SAVED = 1024 * 1024  # bytes of a file
 _T = TypeVar("_T")
+_Locations = list[Location]
 
 
 class TextPlace(NamedTuple):
@@ -35,61 +30,34 @@ class TextPlace(NamedTuple):
         """The file, the line and the column."""
         return self.path, self.line, self.column
 
+    @property
+    def text_line(self) -> str:
+        """The text of the line."""
+        return self.lines.text.split("\n")[self.line - 1]
+
     def ranges(self, look: Look) -> TextRanges:
         """Return the ranges in the files of a look."""
         return TextRanges(look, self.root)
 
 
-def _without_lines(look: Look, place: TextPlace, numbers: Collection[int]) -> Look:
-    """Return a look at the files where some lines of the file of a place are empty."""
-    lines = place.lines.text.split("\n")
-    for number in numbers:
-        lines[number - 1] = ""
-    data = "\n".join(lines).encode("utf-8", "surrogatepass")
-    return look.again(overlaid(look.tree, {place.path: data}))
-
-
-def _lines_with_errors(look: Look, path: str) -> set[int]:
-    """Return the lines of a file with errors."""
-    errors = [finding.location for finding in look.findings if finding.severity == "error"]
-    return {location.line for location in errors if location.path == path}
-
-
 def readings(look: Look, place: TextPlace, *, keeps_line: bool) -> Iterator[Look]:
     """Yield looks at the files, the first one as they are.
 
-    Where the file of a place has errors, others follow in which it may be read: without the lines
-    with errors, and as it was saved.
+    Where the file of a place has errors, the last look in which it had none follows.
 
     Args:
         look: What was read of the files as they are.
         place: The file, and the line that is typed.
-        keeps_line: Whether the line of the place itself has to stay as it is.
+        keeps_line: Whether the line of the place itself has to be the same there.
     """
     yield look
-    errors = _lines_with_errors(look, place.path)
-    if not errors:
+    clean = look.find_clean(place.path)
+    if not clean or clean is look:
         return
-    others = errors - {place.line}
-    if not keeps_line:
-        yield _without_lines(look, place, [place.line])
-    if others and len(others) <= _MAX_ERRORS:
-        yield _without_lines(look, place, others if keeps_line else {place.line, *others})
-    saved = _saved(place)
-    line = place.lines.text.split("\n")[place.line - 1]
-    if saved is not None and (not keeps_line or saved.line(place.line) == line):
-        data = saved.text.encode("utf-8", "surrogatepass")
-        yield look.again(overlaid(look.tree, {place.path: data}))
-
-
-def _saved(place: TextPlace) -> Source | None:
-    """Return the text of the file of a place as it was saved; None where it is the typed one."""
-    try:
-        data = read_capped(place.root / place.path, _MAX_SAVED)
-    except InputError:
-        return None
-    text = data.decode("utf-8", "replace")
-    return Source(place.path, text) if text != place.lines.text else None
+    source = clean.opened.source(place.path)
+    line = place.text_line
+    if not keeps_line or (source and source.line(place.line) == line):
+        yield clean
 
 
 def also_where_broken(answer: Callable[[Look, TextPlace], _T]) -> Callable[[Look, TextPlace], _T]:
@@ -103,44 +71,44 @@ def also_where_broken(answer: Callable[[Look, TextPlace], _T]) -> Callable[[Look
     return answer_anyway
 
 
-def definitions(look: Look, place: TextPlace) -> list[lsp.Location]:
+def definitions(look: Look, place: TextPlace) -> _Locations:
     """Return where the name at a place is defined."""
     return _located(look, place, are_defined=True)
 
 
-def references(look: Look, place: TextPlace) -> list[lsp.Location]:
+def references(look: Look, place: TextPlace) -> _Locations:
     """Return where the name at a place is defined and used."""
     return _located(look, place, are_defined=False)
 
 
-def highlights(look: Look, place: TextPlace) -> list[lsp.DocumentHighlight]:
+def highlights(look: Look, place: TextPlace) -> list[DocumentHighlight]:
     """Return where the name at a place is written in its file."""
     name = look.names.at(*place.triple)
     ranges = place.ranges(look)
-    marked: dict[tuple[int, int], lsp.DocumentHighlight] = {}
-    for other in look.names.same(name) if name is not None else ():
+    marked: dict[tuple[int, int], DocumentHighlight] = {}
+    for other in look.names.same(name) if name else ():
         if other.location.path == place.path:
             is_defined = other.role == "definition"
-            kind = lsp.DocumentHighlightKind.Write if is_defined else lsp.DocumentHighlightKind.Read
+            kind = DocumentHighlightKind.Write if is_defined else DocumentHighlightKind.Read
             at = ranges.range(other.location)
-            marked.setdefault((at.start.line, at.start.character), lsp.DocumentHighlight(at, kind))
+            marked.setdefault((at.start.line, at.start.character), DocumentHighlight(at, kind))
     return [mark for _, mark in sorted(marked.items())]
 
 
-def links(look: Look, place: TextPlace) -> list[lsp.DocumentLink]:
+def links(look: Look, place: TextPlace) -> list[DocumentLink]:
     """Return the files of packages that a file names, each where it names it."""
     ranges = place.ranges(look)
     return [
-        lsp.DocumentLink(ranges.range(name.location), ranges.uri(name.name))
+        DocumentLink(ranges.range(name.location), ranges.uri(name.name))
         for name in look.names.files_named_in(place.path)
     ]
 
 
-def _located(look: Look, place: TextPlace, *, are_defined: bool) -> list[lsp.Location]:
+def _located(look: Look, place: TextPlace, *, are_defined: bool) -> _Locations:
     name = look.names.at(*place.triple)
     ranges = place.ranges(look)
-    located: list[lsp.Location] = []
-    for other in look.names.same(name) if name is not None else ():
+    located = []
+    for other in look.names.same(name) if name else ():
         at = ranges.place(other.location)
         if (other.role == "definition" or not are_defined) and at not in located:
             located.append(at)

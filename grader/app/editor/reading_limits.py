@@ -55,14 +55,14 @@ class ReadingLimits:
 
     def begin_file(self, path: str) -> None:
         """Note that a file is read from now on, if it is another one than before."""
-        if self._shared is not None and path != self._path:
+        if self._shared and path != self._path:
             self._path = path
             self._shared.write(path)
             self.restart()
 
     def restart(self) -> None:
         """Give a look the whole time of a file again: it is about to read something else."""
-        if self._shared is not None and self._is_looking and sys.platform != "win32":
+        if self._shared and self._is_looking and sys.platform != "win32":
             signal.setitimer(signal.ITIMER_PROF, MAX_FILE_SECONDS)
 
     @contextmanager
@@ -74,7 +74,7 @@ class ReadingLimits:
             yield
         finally:
             self._is_looking = False
-            if self._shared is not None and sys.platform != "win32":
+            if self._shared and sys.platform != "win32":
                 signal.setitimer(signal.ITIMER_PROF, 0)
 
     @contextmanager
@@ -93,7 +93,7 @@ class ReadingLimits:
 
     def _limit_process(self) -> None:
         """Set the limit of the process to that of the oldest work."""
-        if self._shared is None or sys.platform == "win32":
+        if not self._shared or sys.platform == "win32":
             return
         import resource
 

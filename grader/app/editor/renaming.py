@@ -1,22 +1,23 @@
 """Renaming that is proven: it is tried on a copy, which is inspected, before it is offered."""
 
-import re
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 
-from lsprotocol import types as lsp
+from lsprotocol.types import Range, WorkspaceEdit
 from pygls.exceptions import JsonRpcInvalidParams
 
+from grader.app.editor.fixes import apply_edits
 from grader.app.editor.look import Look
 from grader.app.editor.places import TextPlace
-from grader.base.element_edits import edited
+from grader.base.patterns import on_use
 from grader.base.source import Edit, Location
-from grader.base.text import counted
-from grader.files.tree import Tree, overlaid
+from grader.base.text import counted, enumerated
 from grader.report.findings import Finding
 from grader.workspace.api import WrittenName
 
-_VALID = re.compile(r"[\w~/.-]+")
+_REST = on_use(r"[\w~.-]*(?:/[\w~.-]+)+")
+_MAX_NAMED = 3  # places
+_VALID = on_use(r"[\w~/.-]+")
 _WITH_NAMESPACES = ("topic", "service", "action")  # of whose names the last part is renamed
 _ELSEWHERE = "folders, builds and other packages have its name as well"
 _NOT_RENAMED = {
@@ -33,12 +34,9 @@ class CannotRenameError(JsonRpcInvalidParams):
     """Why a name is not renamed: the editor shows the reason."""
 
 
-def prepared(look: Look, place: TextPlace) -> lsp.Range | None:
+def prepared(look: Look, place: TextPlace) -> Range:
     """Return the range of the name at a place, if it can be renamed. Raises CannotRenameError."""
-    name = look.names.at(*place.triple)
-    if name is None:
-        return None
-    _check_kind(name)
+    name = _find_name(look, place)
     if name.is_made:
         raise CannotRenameError(_made(name.location, name.name))
     return place.ranges(look).range(name.location)
@@ -56,39 +54,55 @@ def _check_places(look: Look, name: WrittenName, same: Collection[WrittenName], 
         raise CannotRenameError(f"{where} may have this {name.kind}: {computed.reason}")
 
 
-def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
+def renamed(look: Look, place: TextPlace, new: str) -> WorkspaceEdit:
     """Return the edits that give the name at a place another text, everywhere.
 
     Raises CannotRenameError where something would be wrong then that is not wrong now, or where a
     use of the name may be left.
     """
-    name = look.names.at(*place.triple)
-    if name is None:
-        return None
-    _check_kind(name)
+    name = _find_name(look, place)
     if name.kind in _WITH_NAMESPACES:
         new = new.removeprefix("/")
     if not _VALID.fullmatch(new):
         raise CannotRenameError(f"{new!r} is no name: use letters, digits and underscores")
     same = look.names.same(name)
     _check_places(look, name, same, new)
-    edits: dict[tuple[str, int, int], Edit] = {}
+    edits = {}
     for other in same:
         at = other.location
         if other.is_made:
             raise CannotRenameError(_made(at, name.name))
         edits[at.path, at.line, at.column] = Edit(at.path, at.line, at.column, name.name, new)
-    after = look.again(_with(look, edits))
+    tree = apply_edits(look, edits.values())
+    if not tree:
+        raise CannotRenameError("its places overlap")
+    after = look.again(tree)
     _check_uses(look, after, same, new)
     _check_problems(look, after)
     return place.ranges(look).workspace_edit(edits[key] for key in sorted(edits))
 
 
-def _check_kind(name: WrittenName) -> None:
-    """Raise CannotRenameError for what is more than a word in files."""
-    reason = _NOT_RENAMED.get(name.kind)
-    if reason is not None:
-        raise CannotRenameError(f"a {name.kind} is not renamed here: {reason}")
+def _find_name(look: Look, place: TextPlace) -> WrittenName:
+    """Return the name at a place. Raises CannotRenameError for what is more than a word."""
+    name = look.names.at(*place.triple)
+    where = f"{place.path}:{place.line}"
+    if not name:
+        line = place.text_line
+        rest = _REST.match(line, place.column - 1)
+        last = rest.end() if rest else place.column
+        behind = look.names.at(place.path, place.line, last)
+        if behind and behind.kind in _WITH_NAMESPACES:
+            reason = f"only the last part of the {behind.kind} {behind.owner!r} is renamed"
+            raise CannotRenameError(f"{where}: {reason}: {behind.name!r}")
+        raise CannotRenameError(f"{where}: it is not known what is named here")
+    reason = _NOT_RENAMED.get(name.kind, "")
+    if reason:
+        others = [one.location.file_and_line for one in look.names.same(name)]
+        named = enumerated(dict.fromkeys(others), _MAX_NAMED)
+        raise CannotRenameError(
+            f"a {name.kind} is not renamed here: {reason}; it is named at {named}"
+        )
+    return name
 
 
 def _check_uses(look: Look, after: Look, same: Collection[WrittenName], new: str) -> None:
@@ -118,22 +132,9 @@ def _made(where: Location, name: str) -> str:
     return f"{where.file_and_line} builds the name {name!r} from parts: change it there"
 
 
-def _with(look: Look, edits: Mapping[tuple[str, int, int], Edit]) -> Tree:
-    """Return the files of a look after edits. Raises CannotRenameError where these overlap."""
-    files: dict[str, bytes | None] = {}
-    for path in {path for path, _, _ in edits}:
-        source = look.opened.source(path)
-        assert source is not None  # a name was found in it
-        text = edited(source.text, path, (edit for edit in edits.values() if edit.path == path))
-        if text is None:
-            raise CannotRenameError(f"the places in {path} overlap")
-        files[path] = text.encode("utf-8", "surrogatepass")
-    return overlaid(look.tree, files)
-
-
 def _check_problems(look: Look, after: Look) -> None:
     """Raise CannotRenameError if there is a problem that there was not; lines stay the same."""
-    before = Counter(_identity(finding) for finding in look.findings)
+    before = Counter(map(_identity, look.findings))
     for finding in after.findings:
         identity = _identity(finding)
         before[identity] -= 1

@@ -49,7 +49,7 @@ _Diagnostics = Mapping[str, list[lsp.Diagnostic]]
 
 
 # What is asked about one place of a file, with what answers it.
-_ANSWERS: Mapping[str, Callable[[Look, places.TextPlace], Any]] = {
+_ANSWERS = {
     lsp.TEXT_DOCUMENT_HOVER: places.also_where_broken(describing.hover),
     lsp.TEXT_DOCUMENT_DEFINITION: places.also_where_broken(places.definitions),
     lsp.TEXT_DOCUMENT_REFERENCES: places.also_where_broken(places.references),
@@ -59,7 +59,7 @@ _ANSWERS: Mapping[str, Callable[[Look, places.TextPlace], Any]] = {
     lsp.TEXT_DOCUMENT_PREPARE_RENAME: renaming.prepared,
 }
 _OPTIONS = {
-    lsp.TEXT_DOCUMENT_COMPLETION: lsp.CompletionOptions(trigger_characters=[*"\"'/({[. <"]),
+    lsp.TEXT_DOCUMENT_COMPLETION: lsp.CompletionOptions(trigger_characters=list("\"'/({[. <")),
     lsp.TEXT_DOCUMENT_SIGNATURE_HELP: lsp.SignatureHelpOptions(trigger_characters=[" ", '"']),
 }
 
@@ -91,7 +91,7 @@ class _GraderServer(LanguageServer):
         """End the session of a folder of the editor, and show nothing of it any more."""
         path = to_fs_path(uri)
         root = Path(os.path.realpath(path)) if path is not None else None
-        if root is None or self.sessions.pop(root, None) is None:
+        if not root or not self.sessions.pop(root, None):
             return
         waiting = self._refreshing.pop(root, None)
         if waiting is not None:
@@ -120,9 +120,9 @@ class _GraderServer(LanguageServer):
         file = Path(os.path.realpath(name))
         roots = [root for root in self.sessions if file.is_relative_to(root)]
         around = max(roots, key=lambda root: len(root.parts), default=None)
-        if around is None and not self.workspace.folders:
+        if not around and not self.workspace.folders:
             around = _choose_folder(file)
-        if around is None:
+        if not around:
             return None
         session = self.session_in(around)
         path = session.files.find_path(file)
@@ -341,29 +341,26 @@ def _offer_changes(server: _GraderServer) -> None:
 
     @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     async def answer_symbols(ls: _GraderServer, params: lsp.DocumentSymbolParams) -> Any:
-        start = lsp.Position(0, 0)
-        return await ls.answer(params.text_document.uri, start, symbols.in_document)
+        return await ls.answer(params.text_document.uri, lsp.Position(0, 0), symbols.in_document)
 
     @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_LINK)
     async def answer_links(ls: _GraderServer, params: lsp.DocumentLinkParams) -> Any:
-        start = lsp.Position(0, 0)
-        return await ls.answer(params.text_document.uri, start, places.links)
+        return await ls.answer(params.text_document.uri, lsp.Position(0, 0), places.links)
 
     @server.feature(lsp.TEXT_DOCUMENT_FOLDING_RANGE)
     async def answer_folding(ls: _GraderServer, params: lsp.FoldingRangeParams) -> Any:
         document = ls.workspace.get_text_document(params.text_document.uri)
-        ranges = partial(folding.folding_ranges, document.path, document.source)
-        return await ls.in_thread(ranges)
+        return await ls.in_thread(partial(folding.folding_ranges, document.path, document.source))
 
     @server.command(logs.EXPLAIN)
     async def explain(ls: _GraderServer, log: str) -> list[str]:
-        sessions = [*ls.sessions.values()]
+        sessions = list(ls.sessions.values())
         return await ls.in_thread(partial(logs.explain, sessions, log))
 
     @server.feature(lsp.WORKSPACE_SYMBOL)
     async def all_symbols(ls: _GraderServer, params: lsp.WorkspaceSymbolParams) -> Any:
-        symbols_of_roots: list[lsp.SymbolInformation] = []
-        for session in [*ls.sessions.values()]:
+        symbols_of_roots = []
+        for session in list(ls.sessions.values()):
             find = partial(symbols.in_workspace, session, params.query)
             symbols_of_roots += await ls.in_thread(find)
         return symbols_of_roots

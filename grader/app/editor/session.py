@@ -55,6 +55,7 @@ class EditorSession:
         self._looking = -1
         self._ends_anyway = False  # a look, although the files change meanwhile
         self._look: Look | None = None
+        self._clean: dict[str, Look] = {}  # by the files that are typed
         self._memory = Memory(_MOST, self._check)
         self._lock = Lock()
 
@@ -81,12 +82,30 @@ class EditorSession:
         With `ends_anyway` it does not end early.
         """
         with self._lock:
-            if self._look is None or self._seen != self._version:
+            if not self._look or self._seen != self._version:
                 self._looking = self._version
                 self._ends_anyway = ends_anyway
+                before = self._look
                 self._look = self._look_at(self.files.tree())
+                self._memory.forget_unused()
                 self._seen = self._looking
+                self._keep_clean(before, self._look)
             return self._look
+
+    def _keep_clean(self, before: Look | None, look: Look) -> None:
+        """Keep the last look in which each file that is typed had no error."""
+        kept = {}
+        for path in self.files.typed:
+            if not look.has_errors(path):
+                kept[path] = look
+            elif path in self._clean:
+                kept[path] = self._clean[path]
+            elif before and path in before.tree.files and not before.has_errors(path):
+                kept[path] = before
+        self._clean = kept
+
+    def _find_clean(self, path: str) -> Look | None:
+        return self._clean.get(path)
 
     def _look_again(self, tree: Tree) -> Look:
         """Return a look at other files, such as these after edits."""
@@ -99,7 +118,15 @@ class EditorSession:
         settings = self._read_settings()
         grade = partial(self._grade, settings)
         with self._limits.looking():
-            return look_at(tree, self.files.root, settings, self._memory, grade, self._look_again)
+            return look_at(
+                tree,
+                self.files.root,
+                settings,
+                self._memory,
+                grade,
+                self._look_again,
+                self._find_clean,
+            )
 
     def _begin_file(self, path: str) -> None:
         self._limits.begin_file(str(self.files.root / path))

@@ -1,28 +1,27 @@
 """The parameters of a macro of xacro, while its call is written."""
 
-import re
-
 from lsprotocol import types as lsp
 
+from grader.app.editor.completions import typed_place
 from grader.app.editor.look import Look
 from grader.app.editor.places import TextPlace
 
-_CALL = re.compile(r"<xacro:(?P<macro>[\w.-]++)(?P<given>\s[^<>]*+)\Z")
-_GIVEN = re.compile(r"(?<![\w.-])(?P<name>[\w.-]++)\s*+=\s*+(?P<value>[\"'])?")
+_PREFIX = "xacro:"
 
 
 def signature(look: Look, place: TextPlace) -> lsp.SignatureHelp | None:
     """Return the parameters of the macro whose call a place is in; None elsewhere."""
-    call = _CALL.search(place.lines.text_before(place.line, place.column))
-    macros = look.names.parameters_of_macro(call["macro"]) if call is not None else []
-    if call is None or not macros:
+    typed = typed_place(place)
+    holder = typed.holder if typed else None
+    if not holder or not holder.name.startswith(_PREFIX) or not holder.slot:
         return None
-    given = [each["name"] for each in _GIVEN.finditer(call["given"])]
     signatures = []
-    for path, parameters in macros:
-        label = " ".join([f"xacro:{call['macro']}", *parameters])
-        named = [re.split(":=|=|:", parameter)[0].lstrip("*") for parameter in parameters]
-        active = named.index(given[-1]) if given and given[-1] in named else None
+    for path, parameters in look.names.parameters_of_macro(holder.name.removeprefix(_PREFIX)):
+        names = [
+            parameter.lstrip("*").partition(":")[0].partition("=")[0] for parameter in parameters
+        ]
+        active = names.index(holder.slot) if holder.slot in names else None
         shown = [lsp.ParameterInformation(parameter) for parameter in parameters]
+        label = " ".join([holder.name, *parameters])
         signatures.append(lsp.SignatureInformation(label, path, shown, active))
-    return lsp.SignatureHelp(signatures, 0)
+    return lsp.SignatureHelp(signatures, 0) if signatures else None

@@ -21,6 +21,7 @@ from pygls.workspace import PositionCodec, TextDocument
 
 from grader.app.editor.edited_files import SkippedText
 from grader.app.editor.reading_limits import MAX_FILE_SECONDS, SharedPath
+from grader.base.patterns import on_use
 from grader.base.processor_time import INSPECT_SECONDS
 from grader.base.text import printable_path
 
@@ -28,7 +29,7 @@ LOOKED = "$/grader/looked"  # a worker has looked at the files; the editor is no
 _Message = dict[str, Any]
 # What is asked about one place is answered in any case, before an editor seems to hang: nothing,
 # until the worker has read the files.
-_NOTHING_YET: Mapping[str, object] = {
+_NOTHING_YET = {
     lsp.TEXT_DOCUMENT_HOVER: None,
     lsp.TEXT_DOCUMENT_DEFINITION: None,
     lsp.TEXT_DOCUMENT_REFERENCES: None,
@@ -55,6 +56,9 @@ Skipped = Mapping[str, SkippedText]  # by the real paths of the files
 _Serve = Callable[[BinaryIO, BinaryIO, SharedPath, Skipped], None]
 
 
+_LENGTH = on_use(rb"(?i)content-length:[ \t]*(\d{1,12})[ \t]*(?=\r|\Z)")
+
+
 class _Stream:
     """The messages in the bytes that arrive, which have headers before each."""
 
@@ -66,19 +70,13 @@ class _Stream:
         self._data += data
         while True:
             head, mark, rest = self._data.partition(b"\r\n\r\n")
-            length = _content_length(head)
+            # Behind a wrong header, that of the next message follows the text of the one before.
+            lengths = _LENGTH.findall(head)
+            length = int(lengths[-1]) if lengths else 0
             if not mark or len(rest) < length:
                 return
             self._data = rest[length:]
             yield bytes(rest[:length])
-
-
-def _content_length(head: bytes | bytearray) -> int:
-    for line in head.split(b"\r\n"):
-        name, _, value = line.partition(b":")
-        if name.strip().lower() == b"content-length" and value.strip().isdigit():
-            return int(value)
-    return 0
 
 
 def _framed(body: bytes) -> bytes:
@@ -162,7 +160,8 @@ class Supervisor:
 
     def __init__(self, serve: _Serve, editor_input: int, editor_output: int) -> None:
         self._serve = serve
-        self._input, self._output = editor_input, editor_output
+        self._input = editor_input
+        self._output = editor_output
         self._stream = _Stream()
         self._selector = selectors.DefaultSelector()
         self._worker: _Worker | None = None
@@ -187,31 +186,38 @@ class Supervisor:
                 self._step()
         finally:
             self._selector.close()
-            if self._worker is not None:
+            if self._worker:
                 self._worker.end()
 
     def _step(self) -> None:
         """Wait for messages, and for a worker that takes what was not sent."""
-        worker, pause = self._worker, _POLL if self._waiting else None
-        if worker is not None and worker.has_unsent:
+        worker = self._worker
+        pause = _POLL if self._waiting else None
+        if worker and worker.has_unsent:
             worker.send()
             pause = _POLL_UNSENT
         for key, _ in self._selector.select(pause):
             data = os.read(key.fd, _CHUNK)
             if key.fd == self._input:
                 self._take_from_editor(data)
-            elif worker is not None and self._worker is worker:
+            elif worker and self._worker is worker:
                 self._take_from_worker(worker, data)
         self._answer_late()
 
     def _take_from_editor(self, data: bytes) -> None:
         self._is_ended = not data
         for body in self._stream.messages(data):
-            message: object = None
-            with suppress(ValueError):  # no JSON
+            try:
                 message = json.loads(body)
-            if isinstance(message, dict):
+            except (ValueError, RecursionError):
+                self._refuse(None, lsp.ErrorCodes.ParseError, "the message is no JSON")
+                continue
+            is_request = isinstance(message, dict) and isinstance(message.get("method", ""), str)
+            if is_request and isinstance(message.get("id", ""), int | str):
                 self._pass_to_worker(message, body)
+            else:
+                reason = "a message is an object with a method and an id, a number or a text"
+                self._refuse(None, lsp.ErrorCodes.InvalidRequest, reason)
 
     def _pass_to_worker(self, message: _Message, body: bytes) -> None:
         method = message.get("method", "")
@@ -223,16 +229,25 @@ class Supervisor:
             return
         with suppress(Exception):  # what is said wrongly is for the worker to refuse
             self._follow(method, message.get("params"), body)
-        if self._worker is None and method in _CHANGES:
+        if not self._worker and method in _CHANGES:
             self._start_worker()  # with the change
-        elif self._worker is not None:
-            if method and "id" in message:
-                clock = time.monotonic()
-                waiting = _Waiting(method, self._worker.seconds(), clock)
-                self._waiting[message["id"]] = waiting
+        elif self._worker:
+            if method and "id" in message and not self._note_request(message):
+                return
             self._worker.send(_framed(body))
         elif method and "id" in message:
             self._answer(message["id"], _NOTHING_YET.get(method))
+
+    def _note_request(self, message: _Message) -> bool:
+        """Note that a request waits; return whether it does: wrong parameters are refused."""
+        assert self._worker
+        wrong = self._why_wrong(message)
+        if wrong:
+            self._refuse(message["id"], lsp.ErrorCodes.InvalidParams, wrong)
+            return False
+        waiting = _Waiting(message["method"], self._worker.seconds(), time.monotonic())
+        self._waiting[message["id"]] = waiting
+        return True
 
     def _follow(self, method: str, params: Any, body: bytes) -> None:
         """Keep what another worker has to know."""
@@ -284,7 +299,7 @@ class Supervisor:
     def _pass_answer(self, message: _Message, body: bytes) -> None:
         """Pass an answer on, unless the request was answered before."""
         waiting = self._waiting.pop(message.get("id"), None)
-        if waiting is None:
+        if not waiting:
             return
         if waiting.method == lsp.INITIALIZE and "result" in message:
             encoding = message["result"]["capabilities"].get("positionEncoding")
@@ -302,8 +317,8 @@ class Supervisor:
 
     def _answer_late(self) -> None:
         """Answer with nothing what waits for too long."""
-        for number, waiting in [*self._waiting.items()]:
-            if waiting.method in _NOTHING_YET and self._worker is not None:
+        for number, waiting in list(self._waiting.items()):
+            if waiting.method in _NOTHING_YET and self._worker:
                 used = self._worker.seconds() - waiting.start
                 if used > _PATIENCE or time.monotonic() - waiting.clock > _MAX_PATIENCE:
                     del self._waiting[number]
@@ -312,8 +327,10 @@ class Supervisor:
     def _replace_worker(self, worker: _Worker) -> None:
         """Start another worker in place of one that has ended."""
         self._selector.unregister(worker.output)
-        path, code = worker.reading.read(), worker.end()
-        self._worker, self._is_first = None, False
+        path = worker.reading.read()
+        code = worker.end()
+        self._worker = None
+        self._is_first = False
         for number, waiting in self._waiting.items():
             self._answer(number, _NOTHING_YET.get(waiting.method))
         self._waiting.clear()
@@ -334,7 +351,7 @@ class Supervisor:
         These are the texts that have changed since the last look, else that of the file that was
         read.
         """
-        causes: dict[str, SkippedText] = {}
+        causes = {}
         slow = None
         for uri, document in self._texts.items():
             before = self._seen.get(uri)
@@ -360,8 +377,7 @@ class Supervisor:
                 document.version or 0,
                 document.source,
             )
-            params = lsp.DidOpenTextDocumentParams(item)
-            opened = lsp.DidOpenTextDocumentNotification(params)
+            opened = lsp.DidOpenTextDocumentNotification(lsp.DidOpenTextDocumentParams(item))
             worker.send(_framed(json.dumps(self._converter.unstructure(opened)).encode()))
 
     def _say(self, message: str) -> None:
@@ -370,9 +386,23 @@ class Supervisor:
         shown = {"jsonrpc": "2.0", "method": lsp.WINDOW_SHOW_MESSAGE, "params": params}
         self._write(json.dumps(shown).encode())
 
+    def _why_wrong(self, message: _Message) -> str:
+        """Return why the parameters of a request are not those of its method; else nothing."""
+        kinds = lsp.METHOD_TO_TYPES.get(message["method"])
+        try:
+            if kinds is not None:
+                self._converter.structure({"jsonrpc": "2.0", **message}, kinds[0])
+        except Exception as error:  # noqa: BLE001  cattrs raises groups of any errors
+            return f"the parameters are not those of {message['method']} ({type(error).__name__})"
+        return ""
+
+    def _refuse(self, number: object, code: lsp.ErrorCodes, reason: str) -> None:
+        """Answer with an error."""
+        error = {"code": code.value, "message": reason}
+        self._write(json.dumps({"jsonrpc": "2.0", "id": number, "error": error}).encode())
+
     def _answer(self, number: object, result: object) -> None:
-        answer = {"jsonrpc": "2.0", "id": number, "result": result}
-        self._write(json.dumps(answer).encode())
+        self._write(json.dumps({"jsonrpc": "2.0", "id": number, "result": result}).encode())
 
     def _write(self, body: bytes) -> None:
         """Write a message to the editor; one that is gone has ended the session."""

@@ -46,7 +46,7 @@ def in_document(look: Look, place: TextPlace) -> list[lsp.DocumentSymbol]:
         symbols.append(lsp.DocumentSymbol(each.name, kind, at, at, detail=each.kind))
     symbols.sort(key=lambda symbol: (symbol.range.start.line, symbol.range.start.character))
     robot = look.robots.get(place.path)
-    return _as_tree(symbols, robot) if robot is not None and robot.roots else symbols
+    return _as_tree(symbols, robot) if robot and robot.roots else symbols
 
 
 def _as_tree(
@@ -55,9 +55,10 @@ def _as_tree(
     """Return symbols of which those of a robot are below each other."""
     links = {symbol.name: symbol for symbol in symbols if symbol.detail == "link"}
     joints = {symbol.name: symbol for symbol in symbols if symbol.detail == "joint"}
-    nested = set[int]()
+    nested = set()
     for joint in robot.robot.joints:
-        parent, child = links.get(joint.parent), links.get(joint.child)
+        parent = links.get(joint.parent)
+        child = links.get(joint.child)
         between = joints.get(joint.name)
         if parent is None or between is None or child is None:
             continue

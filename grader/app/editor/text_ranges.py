@@ -62,7 +62,8 @@ class TextRanges:
     """Ranges in the files of a look."""
 
     def __init__(self, look: Look, root: Path) -> None:
-        self._look, self._root = look, root
+        self._look = look
+        self._root = root
         self._lines: dict[str, Lines] = {}
 
     def lines(self, path: str) -> Lines:

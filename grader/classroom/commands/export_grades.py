@@ -3,19 +3,19 @@
 They go into CSV, JSON, pages or a file of an LMS, and the reports become feedback for an LMS.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from decimal import ROUND_FLOOR, Decimal
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from zipfile import is_zipfile
 
 from grader.base.errors import GraderError, InputError
+from grader.base.grouping import StringsByName
 from grader.base.text import (
     counted,
     enumerated,
     format_points,
-    named,
     people_text,
     printable,
     printable_path,
@@ -23,6 +23,7 @@ from grader.base.text import (
 from grader.classroom.gradebook.gradebook import Gradebook, grade_table
 from grader.classroom.gradebook.student_grade import Reason, StudentGrade
 from grader.classroom.lms.feedback import (
+    NamesInZip,
     canvas_names,
     comment_html,
     lost_points,
@@ -33,9 +34,10 @@ from grader.classroom.lms.fill import Filled, FillOptions, PublishedGrade, by_re
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.reports.class_figures import record_run, warn_of_ignored
+from grader.classroom.roster.typed_names import find_typed
 from grader.classroom.spreadsheet import SPREADSHEET, write_spreadsheet
 from grader.classroom.tables import SIZE_LIMIT, write_table
-from grader.files.reading import read_capped
+from grader.files.reading import read_capped, read_start
 from grader.report.formats import Format
 from grader.report.invocation import ExitCode
 from grader.report.writing import (
@@ -46,6 +48,7 @@ from grader.report.writing import (
     refuse_symlinks,
     save_bytes,
 )
+from grader.report.written_files import refuse_other_file
 
 _DOUBTS = (
     Reason.OLDER_MARKS,
@@ -55,7 +58,12 @@ _DOUBTS = (
 _SPREADSHEETS = (SPREADSHEET, ".xls", ".ods")
 _BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
 # The targets of each option that not all targets take.
-_TARGETS = {"--into": tuple(FORMS), "--feedback": ("moodle", "canvas"), "--excel": ("csv",)}
+_TARGETS = {
+    "--into": tuple(FORMS),
+    "--feedback": ("moodle", "canvas"),
+    "--excel": ("csv",),
+    "--for": ("csv", *FORMS),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +80,7 @@ class ExportRequest:
     pending_as_zero: bool = False  # whether points that need manual grading count as zero
     any_maximum: bool = False  # whether the maximum of the LMS may be another one
     only: bool = False  # whether the columns of other assignments are omitted
+    students: Sequence[str] = ()  # whose grades are released, as typed; all, if there are none
     excel: bool = False  # whether Excel opens the CSV with a double click
     feedback: Path | None = None  # the zip of reports to write
     feedback_format: str = "html"
@@ -84,25 +93,26 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
     """
     _refuse_options(request)
     book = Gradebook(request.gradebook)
-    roots = book.settings.roots(book.folder)
+    roots = book.roots
     if request.target == "html":
         from grader.classroom.reports import class_reports  # it loads what runs processes
 
         folder = request.output or book.folder / names.REPORTS
-        if request.output is not None:
+        if request.output:
             class_reports.refuse_report_folder(folder, roots)
         class_reports.write_reports(
             class_reports.ReportRun(book.folder, folder, (Format.HTML,)), terminal
         )
         return b"", ExitCode.PASSED
     _refuse_paths(request, book, roots)
+    request = replace(request, students=_find_released(request, book))
     warn_of_ignored(book, terminal.warn)
     exported = _exported(request, book, terminal)
     doubts = [
-        (why, named(one.student.key, one.student.name), detail)
-        for one in book
+        (why, one.student.label, detail)
+        for one in _released_grades(request, book)
         for why, detail in one.concerns.items()
-        if why in _DOUBTS or (why is Reason.DAMAGED and request.into is None)
+        if why in _DOUBTS or (why is Reason.DAMAGED and not request.into)
     ]
     for line in by_reason(doubts):
         terminal.warn(line)
@@ -115,20 +125,44 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
         terminal.warn(f"nothing was written, because of --strict: {why}")
         return b"", ExitCode.FAILED
     record_run(book.folder, terminal.warn)
-    if request.feedback is not None:
-        save_bytes(request.feedback, _feedback(request, book, exported.numbers, terminal), roots)
-    if request.output is None:
+    if request.feedback:
+        zipped = _feedback(request, book, exported.numbers, terminal)
+        if zipped:
+            save_bytes(request.feedback, zipped, roots)
+    if not request.output:
         return exported.data, ExitCode.PASSED
     save_bytes(request.output, exported.data, roots)
     return b"", ExitCode.PASSED
 
 
+def _find_released(request: ExportRequest, book: Gradebook) -> Sequence[str]:
+    """Return the keys of the students whose grades are released. Raises InputError."""
+    if not request.students:
+        return tuple(book.keys)
+    students = [grade.student for grade in book]
+    advice = "; `grades.csv` lists all students"
+    return tuple(find_typed(students, name, advice).key for name in request.students)
+
+
+def _released_grades(request: ExportRequest, book: Gradebook) -> Iterator[StudentGrade]:
+    """Yield the grades that are released."""
+    released = {*request.students}
+    return (grade for grade in book if grade.student.key in released)
+
+
 def _refuse_paths(request: ExportRequest, book: Gradebook, roots: Sequence[Path]) -> None:
-    """Raise InputError for an output in the gradebook, or one that leads through a symlink."""
-    for path in (request.output, request.feedback):
-        if path is None:
+    """Raise InputError for an output in the gradebook, or one that leads through a symlink.
+
+    Also raise it for a file in a submission that the grader did not write.
+    """
+    header = None
+    if request.into and request.into.is_file():
+        header = read_start(request.into, SIZE_LIMIT).partition(b"\n")[0]
+    for option, path in (("--output", request.output), ("--feedback", request.feedback)):
+        if not path:
             continue
         refuse_symlinks(path, roots)
+        refuse_other_file(option, path, roots, header)
         if book.folder.resolve() in path.resolve().parents:
             raise InputError(
                 f"cannot write {printable_path(path)}: the gradebook is written by its own commands"
@@ -138,8 +172,8 @@ def _refuse_paths(request: ExportRequest, book: Gradebook, roots: Sequence[Path]
 def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Filled:
     """Return the exported file, empty if only feedback is asked for."""
     if request.target == "csv":
-        table = grade_table(book, book, is_exported=True)
-        if request.output is not None and request.output.suffix.lower() == SPREADSHEET:
+        table = grade_table(book, _released_grades(request, book), is_exported=True)
+        if request.output and request.output.suffix.lower() == SPREADSHEET:
             return Filled(write_spreadsheet(*table))
         data = write_table(*table).encode()
         return Filled(_BOM + data if request.excel else data)
@@ -147,7 +181,7 @@ def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Fi
         from grader.classroom.reports.class_json import render_class_json
 
         return Filled(render_class_json(book).encode())
-    if request.into is None:
+    if not request.into:
         return Filled()
     form = FORMS[request.target]
     options = FillOptions(
@@ -164,8 +198,8 @@ def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Fi
     for line in filled.lines:
         terminal.warn(line)
     zeros = [
-        named(grade.student.key, grade.student.name)
-        for grade in book
+        grade.student.label
+        for grade in _released_grades(request, book)
         if _is_open_zero(grade, request) and not grade.total
     ]
     if zeros:
@@ -180,6 +214,8 @@ def _class_grade(
 
     Points that need manual grading count as zero with --pending-as-zero.
     """
+    if grade.student.key not in request.students:
+        return PublishedGrade(grade.student, None, why_open="is not released")
     total = grade.total if _is_open_zero(grade, request) else grade.published
     comment = ""
     if has_comment and total is not None:
@@ -204,7 +240,7 @@ def _comment(book: Gradebook, grade: StudentGrade, total: Decimal, *, has_open_z
 
 
 def _feedback(
-    request: ExportRequest, book: Gradebook, numbers: Mapping[str, str], terminal: Terminal
+    request: ExportRequest, book: Gradebook, numbers: StringsByName, terminal: Terminal
 ) -> bytes:
     """Return the zip of the reports, named as the LMS gives them to its students.
 
@@ -216,11 +252,12 @@ def _feedback(
 
     kind = Format(request.feedback_format)
     report_name = f"report.{kind.ending}"
-    grades = [grade for grade in book if grade.stored is not None or grade.has_final]
+    released = _released_grades(request, book)
+    grades = [grade for grade in released if grade.stored or grade.has_final]
     names_in_zip, without = _names_in_zip(request, grades, numbers, report_name)
     reports_folder = book.folder / names.REPORTS
     files = class_reports.file_names([grade.student.key for grade in grades])
-    reports = dict[str, bytes]()
+    reports = {}
     with TemporaryDirectory() as folder:
         run = class_reports.ReportRun(book.folder, Path(folder), (kind,))
         lost = class_reports.render_reports(run, files, terminal)
@@ -234,18 +271,19 @@ def _feedback(
             save_bytes(reports_folder / f"{files[key]}.{kind.ending}", reports.pop(key))
             without[key] = f"{why}; see {printable_path(reports_folder)}"
     zipped, different = write_feedback(reports, names_in_zip, report_name)
-    people = {grade.student.key: named(grade.student.key, grade.student.name) for grade in grades}
+    people = {grade.student.key: grade.student.label for grade in grades}
     missing = {**without, **lost, **different}
     for line in by_reason(("without feedback", people[key], missing[key]) for key in missing):
         terminal.warn(line)
-    written = counted(len(reports) - len(different), "report")
-    terminal.warn(f"{written} in {printable_path(request.feedback or Path())}")
-    return zipped
+    count = len(reports) - len(different)
+    shown = printable_path(request.feedback or Path())
+    terminal.warn(f"{counted(count, 'report')} in {shown}" if count else f"{shown} is not written")
+    return zipped if count else b""
 
 
 def _names_in_zip(
-    request: ExportRequest, grades: Sequence[StudentGrade], numbers: Mapping[str, str], report: str
-) -> tuple[dict[str, str], dict[str, str]]:
+    request: ExportRequest, grades: Sequence[StudentGrade], numbers: StringsByName, report: str
+) -> NamesInZip:
     """Return the names of the reports for the LMS by student, and why a student has none."""
     if request.target == "canvas":
         submissions = []
@@ -254,7 +292,7 @@ def _names_in_zip(
             submissions.append((grade.student, paths))
         return canvas_names(submissions, report)
     students = [grade.student for grade in grades]
-    if request.into is not None:  # its rows have the numbers of this assignment
+    if request.into:  # its rows have the numbers of this assignment
         students = [student._replace(moodle=numbers.get(student.key, "")) for student in students]
     return moodle_names(students, report)
 
@@ -264,24 +302,31 @@ def _refuse_options(request: ExportRequest) -> None:
 
     A file that must not be replaced raises it, too.
     """
-    into, output, feedback = request.into, request.output, request.feedback
-    given = {"--into": into, "--feedback": feedback, "--excel": request.excel}
+    into = request.into
+    output = request.output
+    feedback = request.feedback
+    given = {
+        "--into": into,
+        "--feedback": feedback,
+        "--excel": request.excel,
+        "--for": request.students,
+    }
     for option, targets in _TARGETS.items():
         if given[option] and request.target not in targets:
             raise GraderError(
                 f"export {request.target} takes no {option}: it is for {enumerated(targets)}"
             )
     _refuse_spreadsheet(request)
-    if request.target in FORMS and into is None and (output or not feedback):
+    if request.target in FORMS and not into and (output or not feedback):
         raise GraderError(
             f"export {request.target} fills in a file that the LMS exported: give it with --into"
         )
-    if into is not None:
-        is_replaced = is_stdout(into) if output is None else is_same_file(output, into)
+    if into:
+        is_replaced = is_stdout(into) if not output else is_same_file(output, into)
         if is_replaced:
             why = "--into reads it, and rows without a grade would be lost"
             raise GraderError(f"cannot write {printable_path(into)}: {why}; choose another file")
-    if feedback is not None:
+    if feedback:
         _refuse_feedback(feedback)
 
 
@@ -289,8 +334,8 @@ def _refuse_spreadsheet(request: ExportRequest) -> None:
     """Raise GraderError for a file whose ending is that of a spreadsheet that is not written."""
     output = request.output
     written = ".csv or .xlsx" if request.target == "csv" else "no spreadsheet"
-    ending = output.suffix.lower() if output is not None and request.target != "html" else ""
-    if output is not None and ending in _SPREADSHEETS and ending not in written:
+    ending = output.suffix.lower() if output and request.target != "html" else ""
+    if output and ending in _SPREADSHEETS and ending not in written:
         raise GraderError(
             f"cannot write {printable_path(output)}: export {request.target} writes {written}; "
             "choose another file"

@@ -16,6 +16,7 @@ from typing import Any
 
 from grader import __version__
 from grader.base.errors import GraderError, InputError
+from grader.base.grouping import known_values
 from grader.base.text import (
     MAX_NAMED,
     counted,
@@ -46,7 +47,6 @@ from grader.classroom.results.results import (
     Results,
     ResultsWriter,
     Run,
-    RunGrade,
     hash_values,
     time_of_run,
 )
@@ -71,6 +71,7 @@ _MAX_LINES = 10
 _LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
 _PRIVATE = 0o600
 _FORMAT = 3  # of results: those of another one are graded again
+_Paths = Sequence[Path]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +82,7 @@ class ClassRequest:
     others.
     """
 
-    paths: Sequence[Path] | None  # the class folders or zips
+    paths: _Paths | None  # the class folders or zips
     gradebook: Path | None
     rubric: str | None  # an id or a file
     usual_rubric: str  # of a new gradebook, if no other one is named
@@ -92,7 +93,7 @@ class ClassRequest:
     ignore: Sequence[str] | None  # names of entries that are no student's
     part: Sequence[str] | None  # the ids of the parts to grade
     arg: Sequence[str] | None  # NAME=VALUE, of xacro
-    ignore_file: Sequence[Path] | None  # starter files
+    ignore_file: _Paths | None  # starter files
     max_size: int | None  # of a URDF, in bytes
     jobs: int | None  # worker processes
     timeout: float  # for a submission, in seconds of processor time
@@ -115,12 +116,12 @@ class _ClassInputs:
     roster: Roster | None
 
     @property
-    def roots(self) -> tuple[Path, ...]:
+    def roots(self) -> _Paths:
         """The absolute paths of the submissions."""
         return self.settings.roots(self.folder)
 
     @property
-    def near_roots(self) -> tuple[Path, ...]:
+    def near_roots(self) -> _Paths:
         """The same, relative to the current folder if they are in it."""
         here = Path.cwd()
         return tuple(
@@ -146,7 +147,7 @@ def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
     names.check_free(folder)
     settings = ClassSettings() if is_new else read_settings(folder)
     rubric = usual
-    if named_rubric is not None:
+    if named_rubric:
         rubric = named_rubric
         _refuse_other_rubric(folder, settings, rubric)
     elif not is_new:
@@ -171,7 +172,7 @@ def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
 
 def _read_roster(file: Path | None, folder: Path, settings: ClassSettings) -> Roster | None:
     """Return the roster in a file, else that of the gradebook, if it has one."""
-    if file is None:
+    if not file:
         names.check_roster(folder, settings)
         file = folder / names.ROSTER
         if not file.exists():
@@ -208,9 +209,9 @@ def _updated(
     return settings
 
 
-def _changes_by_options(options: ClassRequest, paths: tuple[str, ...]) -> dict[str, Any]:
+def _changes_by_options(options: ClassRequest, paths: Sequence[str]) -> dict[str, Any]:
     """Return the settings that the options of the command give, by their names."""
-    given: dict[str, Any] = {  # None where the option is not given
+    given = {  # None where the option is not given
         "due": read_time(options.due).isoformat() if options.due else None,
         "layout": options.layout,
         "assignment": options.assignment,
@@ -220,10 +221,10 @@ def _changes_by_options(options: ClassRequest, paths: tuple[str, ...]) -> dict[s
         "max_size": options.max_size,
         "submissions": paths or None,
     }
-    return {name: value for name, value in given.items() if value is not None}
+    return known_values(given)
 
 
-def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
+def _handed_out(files: _Paths, rubric: Rubric) -> Iterator[str]:
     """Yield the hashes of the work that the course handed out.
 
     Raises InputError for a file without any.
@@ -240,9 +241,12 @@ def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _Cl
 
     Raises InputError.
     """
-    folder, settings, rubric = inputs.folder, inputs.settings, inputs.rubric
-    if options.roster is not None:
-        roster, copy = _read_csv(options.roster), folder / names.ROSTER
+    folder = inputs.folder
+    settings = inputs.settings
+    rubric = inputs.rubric
+    if options.roster:
+        roster = _read_csv(options.roster)
+        copy = folder / names.ROSTER
         roster_hash = hash_bytes(roster)
         _warn_of_edits(copy, (settings.roster_hash, roster_hash), options.roster, warn)
         save_bytes(copy, roster, inputs.roots, _PRIVATE)
@@ -276,7 +280,8 @@ def _copy_rubric(folder: Path, rubric: Rubric) -> str:
 
     Return where it is.
     """
-    target, rubric_file = folder / names.RUBRIC, rubric.path.resolve()
+    target = folder / names.RUBRIC
+    rubric_file = rubric.path.resolve()
     is_movable = not Path(rubric.reference).is_absolute()
     sources = []
     for file in list_files(str(rubric.path)):
@@ -284,7 +289,7 @@ def _copy_rubric(folder: Path, rubric: Rubric) -> str:
         if is_copied and (is_movable or file == rubric.path):
             sources.append(file.resolve())
     base = Path(os.path.commonpath([file.parent for file in sources]))
-    copies = dict[Path, Path]()
+    copies = {}
     for source in sources:
         for path in (source, *source.rglob("*")):
             if path.is_file() and path.parent.name != "__pycache__":
@@ -312,13 +317,14 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
     inputs = _read_inputs(request, terminal.warn)
-    folder, rubric = inputs.folder, inputs.rubric
-    if request.due and rubric.late is None:
+    folder = inputs.folder
+    rubric = inputs.rubric
+    if request.due and not rubric.late:
         terminal.warn(
             f"--due has no effect on grades, because the rubric {rubric.id} has no [late]: only "
             "the days late are shown"
         )
-    if request.reports is not None:
+    if request.reports:
         refuse_report_folder(request.reports, inputs.roots)
     intake = _read_class(inputs, terminal.warn)
     refuse_symlinks(folder, inputs.roots)
@@ -334,7 +340,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         inputs = _keep_inputs(inputs, request, terminal.warn)
         table, done = _grade(request, inputs, results, intake, terminal)
     formats = tuple(request.report_format or ())
-    if request.reports is not None and not formats:
+    if request.reports and not formats:
         formats = (Format.TERMINAL,)
     if formats:
         run = ReportRun(folder, request.reports or folder / names.REPORTS, formats, request.answers)
@@ -349,7 +355,8 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
 
 def _read_class(inputs: _ClassInputs, warn: Warn) -> Intake:
     """Return the submissions of the class, and say what was found."""
-    settings, rubric = inputs.settings, inputs.rubric
+    settings = inputs.settings
+    rubric = inputs.rubric
     intake = read_class(
         inputs.near_roots,
         inputs.roster,
@@ -392,7 +399,9 @@ def _grade(
     terminal: Terminal,
 ) -> tuple[ClassTable, Progress]:
     """Grade what has no current result, append the run, and write the grades of the class."""
-    folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
+    folder = inputs.folder
+    rubric = inputs.rubric
+    settings = inputs.settings
     shared = ClassContext(
         tuple(map(str, inputs.roots)),
         rubric.data,
@@ -418,14 +427,14 @@ def _grade(
         )
         book = Gradebook(folder, run=run)
         table = ClassTable(rubric.title, book.maximum, verbose=request.verbose)
-        recorded = dict[str, RunGrade]()
-        timeouts: dict[str, float] = {}
+        recorded = {}
+        timeouts = {}
 
         def passing() -> Iterator[StudentGrade]:
             for grade in book:
                 table.add(grade)
                 recorded[grade.student.key] = book.run_grade(grade)
-                if grade.stored is not None and grade.stored.timeout:
+                if grade.stored and grade.stored.timeout:
                     timeouts[grade.student.key] = grade.stored.timeout
                 yield grade
 
@@ -443,7 +452,8 @@ def _grade(
 
 def _context(inputs: _ClassInputs) -> str:
     """Return the hash of all that results depend on besides the submissions."""
-    folder, settings = inputs.folder, inputs.settings
+    folder = inputs.folder
+    settings = inputs.settings
     # The copy of the rubric has the reference with it.
     files = sorted(path for path in (folder / names.RUBRIC).rglob("*") if path.is_file())
     contents = [(path.relative_to(folder).as_posix(), path.read_bytes()) for path in files]

@@ -98,14 +98,12 @@ def _unassigned(grades: Sequence[StudentGrade]) -> Iterator[str]:
     visitors = (
         one.stored for one in grades if Reason.NOT_ON_ROSTER in one.concerns and not one.is_gone
     )
-    if paths := [stored.paths[0] for stored in visitors if stored is not None and stored.paths]:
+    if paths := [stored.paths[0] for stored in visitors if stored and stored.paths]:
         yield (
             f"still unassigned: {people_text(paths)}: a student with this mark may "
             "have submitted it"
         )
-    unclear = [
-        named(one.student.key, one.student.name) for one in grades if Reason.UNCLEAR in one.concerns
-    ]
+    unclear = [one.student.label for one in grades if Reason.UNCLEAR in one.concerns]
     if unclear:
         yield f"no mark for {people_text(unclear)}: {Reason.UNCLEAR}"
 
@@ -153,7 +151,8 @@ def _append_marks(book: Gradebook, marks: Iterable[Mark], by: str, warn: Warn) -
 
 def _warnings(before: Gradebook, mark: Mark) -> Iterator[str]:
     """Yield what a mark replaced, and that it does not count."""
-    criterion, marks = mark.criterion, before.marks
+    criterion = mark.criterion
+    marks = before.marks
     if old := marks.counting.get((mark.student, criterion)) or marks.comments.get(
         (mark.student, criterion)
     ):

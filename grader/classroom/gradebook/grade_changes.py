@@ -32,7 +32,7 @@ class Change(NamedTuple):
     old: RunGrade
     new: RunGrade
     criteria: list[_PointsChange]
-    why: tuple[str, ...]
+    why: Sequence[str]
 
     @property
     def before(self) -> Decimal | None:
@@ -64,18 +64,22 @@ def snapshot(folder: Path, number: int | None) -> Snapshot:
     Raises InputError.
     """
     book = Gradebook(folder)
-    student_names, grades, early = dict[str, str](), dict[str, RunGrade](), set[str]()
+    student_names = {}
+    grades = {}
+    early = set()
     for grade in book:
         key = grade.student.key
         student_names[key], grades[key] = grade.student.name, book.run_grade(grade)
         if grade.is_marked_early:
             early.add(key)
-    results, run = book.results, book.run_with(grades)
+    results = book.results
+    run = book.run_with(grades)
     is_recorded = not results.unfinished and run.has_equal_grades(book.run)
     if number is not None:
         if not 0 < number <= run.run:
             raise InputError(f"{printable_path(folder)} has no run {number}: it has 1 to {run.run}")
-        results, is_recorded = Results(folder / names.RESULTS, number), True
+        results = Results(folder / names.RESULTS, number)
+        is_recorded = True
         run = results.runs[-1]
     return Snapshot(run, results, student_names, frozenset(early), is_recorded)
 
@@ -111,7 +115,8 @@ def changes(before: Snapshot, after: Snapshot) -> Iterator[Change]:
     order = sorted(keys)
     results = zip(order, before.results.each(order), after.results.each(order), strict=True)
     for key, old, new in results:
-        first, last = before.run.grade(key), after.run.grade(key)
+        first = before.run.grade(key)
+        last = after.run.grade(key)
         criteria = list[_PointsChange]()
         if old is not None and new is not None:
             criteria += _points_changes(old, new, first, last)
@@ -127,7 +132,7 @@ def _why(
     stored: tuple[StoredResult | None, StoredResult | None],
     before: Snapshot,
     after: Snapshot,
-) -> tuple[str, ...]:
+) -> Sequence[str]:
     """Return why a grade changed, at least one reason."""
     reasons = list(_reasons(*stored, before.run, after.run))
     reasons += _reasons_beside(change.old, change.new, before.run, after.run)
@@ -168,7 +173,8 @@ def _points_changes(
     marked = {**first.marks, **last.marks}
     marked.pop(GRADE, None)
     for name in dict.fromkeys((*old.results, *new.results, *marked)):
-        before, after = _counted_points(old, first, name), _counted_points(new, last, name)
+        before = _counted_points(old, first, name)
+        after = _counted_points(new, last, name)
         if before != after:
             yield _PointsChange(name, before, after)
 
@@ -178,9 +184,9 @@ def _reasons(
 ) -> Iterator[str]:
     """Yield what may have changed the points of the checks."""
     if old is None or new is None:
-        if old is not None:
+        if old:
             yield "no longer there"
-        if new is not None:
+        if new:
             yield (
                 "first submission"
                 if new.student not in before.totals
@@ -202,7 +208,7 @@ def _reasons(
 
 def _reasons_beside(first: RunGrade, last: RunGrade, before: Run, after: Run) -> Iterator[str]:
     """Yield what changed besides the points of the checks: marks and deadlines."""
-    changed = set[str | None]()
+    changed = set()
     for name in {*first.marks, *last.marks}:
         if first.marks.get(name) != last.marks.get(name):
             changed.add(last.marks.get(name))

@@ -6,7 +6,7 @@ The grades as a table, one row a student, are `grades.csv`, and `export csv`, wh
 change.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from functools import lru_cache
 from pathlib import Path
@@ -14,13 +14,14 @@ from typing import Any
 
 from grader import __version__
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
 from grader.base.text import format_points, printable_path
 from grader.classroom.gradebook.student_grade import Reason, SharedResult, StudentGrade
 from grader.classroom.intake.class_files import OpenedSubmission, open_class_submission
 from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.marks.gradebook_folder import read_settings
 from grader.classroom.marks.mark_import import exported_text
-from grader.classroom.marks.marks import Mark, Marks, read_marks
+from grader.classroom.marks.marks import Mark, read_marks
 from grader.classroom.results.results import (
     Results,
     Run,
@@ -29,7 +30,7 @@ from grader.classroom.results.results import (
     hash_values,
 )
 from grader.classroom.roster.lateness import Lateness, lateness
-from grader.classroom.roster.roster import Roster, Student, read_roster
+from grader.classroom.roster.roster import Student, read_roster
 from grader.classroom.tables import SIZE_LIMIT, CellValue
 from grader.files.reading import read_capped
 from grader.lab.checks.outcome import Outcome, Status
@@ -53,6 +54,7 @@ _LAST = (
     "email",
     "submission",
 )
+_Cells = list[CellValue]
 
 
 class Gradebook:
@@ -70,36 +72,36 @@ class Gradebook:
         `answers` is the file of the model answers, for those who grade.
         """
         names.check_gradebook(folder)
-        self.folder, self.settings = folder, read_settings(folder)
+        self.folder = folder
+        self.settings = read_settings(folder)
         names.check_roster(folder, self.settings)
-        rubric, roster = folder / self.settings.rubric, folder / names.ROSTER
+        rubric = folder / self.settings.rubric
+        roster = folder / names.ROSTER
         self.rubric = load_rubric(rubric)
-        if answers is not None:
+        if answers:
             from grader.lab.rubric.model_answers import load_with_answers
 
             self.rubric = load_with_answers(str(rubric), answers)
-        self.roster: Roster | None = None
+        self.roster = None
         if roster.exists():
             self.roster = read_roster(
                 read_capped(roster, SIZE_LIMIT, advice=""), printable_path(roster)
             )
         self.results = Results(folder / names.RESULTS)
-        if run is None:
+        if not run:
             self.results.check_newest()
-        if run is None and not self.results.runs:
+        if not run and not self.results.runs:
             raise InputError(
                 f"nothing is graded yet in {printable_path(folder)}: run `grader batch PATH`"
             )
-        self.run: Run = run or self.results.runs[-1]
+        self.run = run or self.results.runs[-1]
         self.due = self.settings.deadline(folder)
-        self._on_roster = (
-            {one.key: one for one in self.roster.students} if self.roster is not None else {}
-        )
-        others = self.results.students if self.roster is None else ()
+        self._on_roster = {one.key: one for one in self.roster.students} if self.roster else {}
+        others = self.results.students if not self.roster else ()
         self.keys = sorted(
             {*self._on_roster, *self.run.totals, *others}
         )  # a submission may have been assigned since
-        self.marks: Marks = read_marks(folder / names.MARKS, self.keys, self.rubric)
+        self.marks = read_marks(folder / names.MARKS, self.keys, self.rubric)
         self._marked = {student for student, _ in (*self.marks.counting, *self.marks.comments)}
         self.is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)
         self._rows = {row.id: row for row in self.rubric.criteria}
@@ -110,7 +112,12 @@ class Gradebook:
         return map(self._grade, self.keys, self.results.each(self.keys))
 
     @property
-    def criteria(self) -> tuple[Criterion, ...]:
+    def roots(self) -> Sequence[Path]:
+        """The class folders and zips."""
+        return self.settings.roots(self.folder)
+
+    @property
+    def criteria(self) -> Sequence[Criterion]:
         """The criteria of the graded parts."""
         return tuple(
             row for row in self.rubric.criteria if row.part in (self.settings.parts or {row.part})
@@ -124,8 +131,8 @@ class Gradebook:
     def run_with(self, grades: Mapping[str, RunGrade]) -> Run:
         """Return the newest run with these grades."""
         totals = {key: grades[key].total if key in grades else None for key in self.run.totals}
-        others = dict[str, str]()
-        details = dict[str, Mapping[str, Any]]()
+        others = {}
+        details = {}
         for key, (total, *more) in grades.items():
             if key not in totals:
                 if total is None:
@@ -144,19 +151,21 @@ class Gradebook:
 
     def run_grade(self, grade: StudentGrade) -> RunGrade:
         """Return a grade as a run records it."""
-        student, late, pending = grade.student, grade.late, ""
+        student = grade.student
+        late = grade.late
+        pending = ""
         marks = {
             one.criterion.id: format_points(one.manual_mark.points)
             for one in grade.results
-            if one.manual_mark is not None
+            if one.manual_mark
         }
-        if grade.final is not None and grade.has_final:
+        if grade.final and grade.has_final:
             marks[GRADE] = grade.final.value
         if grade.obstacle is Reason.PENDING:
             pending = format_points(grade.pending)
         return RunGrade(
             grade.total_text or None,
-            grade.obstacle.name if grade.obstacle is not None else "",
+            grade.obstacle.name if grade.obstacle else "",
             pending,
             late.days,
             format_points(late.points) if late.points else "",
@@ -167,7 +176,7 @@ class Gradebook:
     def _write_deadline(self, student: Student) -> str:
         """Return a student's own deadline as a run records it; empty without one."""
         own_deadline = self.marks.counting.get((student.key, DEADLINE))
-        if own_deadline is not None:
+        if own_deadline:
             return own_deadline.value
         if student.extension_days:
             return f"{student.due} extension {student.extension_days:g}".lstrip()
@@ -182,10 +191,10 @@ class Gradebook:
 
         It is completed by the LMS ids in the names of the submission.
         """
-        person: dict[str, Any] = dict(stored.person) if stored is not None else {}
+        person: dict[str, Any] = dict(stored.person) if stored else {}
         listed = self._on_roster.get(key)
-        if listed is None:
-            return Student(key, **person, is_on_roster=self.roster is None)
+        if not listed:
+            return Student(key, **person, is_on_roster=not self.roster)
         return listed._replace(
             **{name: value for name, value in person.items() if not getattr(listed, name)}
         )
@@ -213,7 +222,7 @@ class Gradebook:
         settings = self.settings
         try:
             opened = self._opened(stored)
-            if opened is None:
+            if not opened:
                 return None
             known = Opening(
                 0, settings.arguments, stored.no_documents, converted=self.results.texts(stored)
@@ -231,7 +240,8 @@ class Gradebook:
 
     def _opened(self, stored: StoredResult) -> OpenedSubmission | None:
         """Open a submission that is as it was graded. Raises InputError."""
-        settings, roots = self.settings, self.settings.roots(self.folder)
+        settings = self.settings
+        roots = self.roots
         if stored.root >= len(roots) or not stored.paths:
             return None
         root = str(roots[stored.root].resolve())
@@ -247,16 +257,14 @@ class Gradebook:
 
     def _grade(self, key: str, stored: StoredResult | None) -> StudentGrade:
         whole = (key, GRADE)
-        student, final = (
-            self.student(key, stored),
-            self.marks.counting.get(whole) or self.marks.comments.get(whole),
-        )
-        known = set[Reason]()
+        student = self.student(key, stored)
+        final = self.marks.counting.get(whole) or self.marks.comments.get(whole)
+        known = set()
         if not student.is_on_roster:
             known.add(Reason.NOT_ON_ROSTER)
         if key in self.run.unclear:
             known.add(Reason.UNCLEAR)
-        if stored is None:
+        if not stored:
             if key in self.run.totals:
                 known.add(Reason.DAMAGED)
             nothing = Report(
@@ -268,10 +276,10 @@ class Gradebook:
         if self.is_outdated or stored.context != self.run.context:
             known.add(Reason.OUTDATED)
         report, older = self.with_marks(self.report(stored), stored)
-        if final is not None and _is_older(final, stored):
+        if final and _is_older(final, stored):
             older = (*older, GRADE)
         late = self._lateness(student, stored, report)
-        if final is not None and final.value:
+        if final and final.value:
             late = Lateness(late.days, reason=late.reason)
         return StudentGrade(student, stored, report, late, final, older, frozenset(known))
 
@@ -290,10 +298,10 @@ class Gradebook:
             times,
             report.score,
             self.due,
-            own_deadline.value if own_deadline is not None else "",
+            own_deadline.value if own_deadline else "",
         )
 
-    def with_marks(self, report: Report, stored: StoredResult) -> tuple[Report, tuple[str, ...]]:
+    def with_marks(self, report: Report, stored: StoredResult) -> tuple[Report, Strings]:
         """Return a report with marks and comments, and the criteria that were marked early.
 
         These were marked before the submission changed.
@@ -301,15 +309,16 @@ class Gradebook:
         if stored.student not in self._marked:
             return report, ()
         results = {one.criterion.id: one for one in report.results}
-        older: list[str] = []
+        older = []
         for name, row in self._rows.items():
             key = stored.student, name
-            mark, comment = self.marks.counting.get(key), self.marks.comments.get(key)
-            if comment is not None and name in results:
+            mark = self.marks.counting.get(key)
+            comment = self.marks.comments.get(key)
+            if comment and name in results:
                 results[name] = results[name]._replace(
                     comment=ManualComment(comment.comment, comment.by)
                 )
-            if mark is None or mark.points is None or row.adjustment is not None:
+            if not mark or mark.points is None or row.adjustment:
                 continue
             given = ManualMark(mark.points, mark.by, mark.comment)
             result = results.get(name) or SharedResult(row, _NOT_SUBMITTED)
@@ -327,7 +336,7 @@ def _is_older(mark: Mark, stored: StoredResult) -> bool:
 
 def grade_table(
     book: Gradebook, grades: Iterable[StudentGrade], *, is_exported: bool = False
-) -> tuple[list[str], Iterator[list[CellValue]]]:
+) -> tuple[list[str], Iterator[_Cells]]:
     """Return the header, and the rows of grades; what is not decided is empty.
 
     A table that `is_exported` has a column by which `mark --import` knows which cells a person
@@ -345,20 +354,22 @@ def list_points(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
     They are by criterion and for the grade.
     """
     points = dict.fromkeys((row.id for row in book.rubric.criteria), "")
-    if grade.stored is not None and not grade.is_excused:
+    if grade.stored and not grade.is_excused:
         points |= {one.criterion.id: one.cell for one in grade.results}
     return {**points, GRADE: grade.total_text}
 
 
-def _table_row(book: Gradebook, grade: StudentGrade, is_exported: bool) -> list[CellValue]:
-    student, late, points = grade.student, grade.late, list_points(book, grade)
-    numbers: list[CellValue] = [None] * 5
+def _table_row(book: Gradebook, grade: StudentGrade, is_exported: bool) -> _Cells:
+    student = grade.student
+    late = grade.late
+    points = list_points(book, grade)
+    numbers: _Cells = [None] * 5
     digest = ""
-    if grade.stored is not None:
+    if grade.stored:
         digest = grade.stored.digest
         if not grade.is_excused:
             numbers = [grade.score, grade.report.max_score, grade.pending, late.days, late.points]
-    row: list[CellValue] = [student.key, student.name, student.section, grade.status]
+    row: _Cells = [student.key, student.name, student.section, grade.status]
     for name in (GRADE, *(criterion.id for criterion in book.rubric.criteria)):
         row.append(Decimal(points[name]) if points[name] else None)
     row += [*numbers, grade.why_open, student.email, digest]

@@ -18,7 +18,7 @@ def write_grades(book: Gradebook, grades: Iterable[StudentGrade] | None = None) 
     Raises InputError.
     """
     table = write_table(*grade_table(book, book if grades is None else grades))
-    save(book.folder / names.GRADES, table, book.settings.roots(book.folder), _PRIVATE)
+    save(book.folder / names.GRADES, table, book.roots, _PRIVATE)
 
 
 def write_grades_with(marks: int, book: Gradebook) -> None:

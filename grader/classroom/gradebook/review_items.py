@@ -4,17 +4,17 @@ Each is a criterion of the students whose answer is the same.
 """
 
 from collections import defaultdict
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
-from grader.base.text import named
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.marks.marks import Key, Mark
 from grader.classroom.results.results import StoredResult, hash_values
 from grader.classroom.roster.roster import Student, plain
 from grader.lab.rubric.criterion import GRADE, Criterion
 
-UNMARKED, OLDER = "unmarked", "older"
+UNMARKED = "unmarked"
+OLDER = "older"
 STATES = {
     UNMARKED: "unmarked",
     "marked": "marked",
@@ -24,7 +24,7 @@ STATES = {
 Place = tuple[str, str]  # a criterion and the key of an answer
 
 
-class ReviewStudent(NamedTuple):
+class _ReviewStudent(NamedTuple):
     """A student of an item."""
 
     student: Student
@@ -37,7 +37,7 @@ class ReviewStudent(NamedTuple):
         """The name and key of the student, or the number of an anonymous one."""
         if self.number:
             return f"submission {self.number}"
-        return named(self.student.key, self.student.name)
+        return self.student.label
 
     @property
     def order(self) -> tuple[int, str, str]:
@@ -50,7 +50,7 @@ class ReviewStudent(NamedTuple):
     @property
     def state(self) -> str:
         """One of STATES."""
-        if self.mark is None or self.mark.points is None:
+        if not self.mark or self.mark.points is None:
             return UNMARKED
         if self.mark.submission in ("", self.stored.digest):
             return "marked"
@@ -68,7 +68,7 @@ class ReviewItem(NamedTuple):
 
     criterion: Criterion
     answer: str
-    members: tuple[ReviewStudent, ...]
+    members: Sequence[_ReviewStudent]
     also: "tuple[ReviewItem, ...]" = ()
 
     @property
@@ -94,7 +94,7 @@ class ReviewItem(NamedTuple):
         return self, *self.also
 
     @property
-    def reason(self) -> tuple[object, ...]:
+    def reason(self) -> Sequence[object]:
         """What items have in common that are shown together.
 
         This is why no check could decide them, and the students.
@@ -113,7 +113,7 @@ class ReviewFilter(NamedTuple):
     section: str = ""
     state: str = UNMARKED
 
-    def members(self, item: ReviewItem, kept: Collection[Key] = ()) -> tuple[ReviewStudent, ...]:
+    def members(self, item: ReviewItem, kept: Collection[Key] = ()) -> Sequence[_ReviewStudent]:
         """Return the students of an item that are shown.
 
         Those in `kept` are shown whatever their state is.
@@ -144,13 +144,14 @@ def review_items(
     """
     keys = sorted(book.keys, key=hash_values) if is_anonymous else book.keys
     numbers = {key: number for number, key in enumerate(keys, 1)}
-    counting, comments = book.marks.counting, book.marks.comments
+    counting = book.marks.counting
+    comments = book.marks.comments
     results = _readable_results(book)
     # Several files are a submission named after the student, so digests of members differ, and with
     # them the keys. Those of one member serve all, whatever the order of the items.
     answers_of_files = {(stored.root, stored.paths): stored.answers for stored in results}
-    rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
-    groups: defaultdict[Place, list[ReviewStudent]] = defaultdict(list)
+    rows = {row.id: row for row in book.rubric.criteria if not row.adjustment}
+    groups = defaultdict(list)
     for stored in sorted(results, key=lambda stored: numbers[stored.student]):
         if (stored.student, GRADE) in counting and not with_final:
             continue
@@ -159,9 +160,9 @@ def review_items(
         number = numbers[stored.student] if is_anonymous else 0
         for name in stored.results:
             mark = counting.get((stored.student, name))
-            if name in rows and (name in answers or mark is not None):
+            if name in rows and (name in answers or mark):
                 counting_mark = mark or comments.get((stored.student, name))
-                member = ReviewStudent(student, stored, counting_mark, number)
+                member = _ReviewStudent(student, stored, counting_mark, number)
                 place = name, answers.get(name, stored.digest)
                 groups[place].append(member)
     items = [

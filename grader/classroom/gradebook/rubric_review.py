@@ -13,7 +13,7 @@ from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.lab.checks.manual import MANUAL_CHECKS
 
 _MIN_DECIDED = 3  # of fewer submissions nothing is said
-_SAME_ROBOT = ("the same file", "the same robot")
+_Criteria = Sequence[CriterionFigures]
 
 
 class _UnlikeGrades(NamedTuple):
@@ -22,9 +22,9 @@ class _UnlikeGrades(NamedTuple):
     It has their automatic points of the robot, and the criteria that differ.
     """
 
-    students: tuple[str, ...]
+    students: Sequence[str]
     equal: str  # what is equal: "the same file"
-    criteria: tuple[str, ...]
+    criteria: Sequence[str]
 
 
 class RubricReview(NamedTuple):
@@ -35,10 +35,10 @@ class RubricReview(NamedTuple):
 
     figures: ClassStatistics
     submissions: int  # that were graded
-    all_pass: Sequence[CriterionFigures]
-    all_fail: Sequence[CriterionFigures]
-    errored: Sequence[CriterionFigures]
-    undecided: Sequence[CriterionFigures]  # those that need manual grading most first
+    all_pass: _Criteria
+    all_fail: _Criteria
+    errored: _Criteria
+    undecided: _Criteria  # those that need manual grading most first
     unlike: Sequence[_UnlikeGrades]
 
 
@@ -47,18 +47,18 @@ def _automatic(figures: ClassStatistics) -> list[CriterionFigures]:
     rows = []
     for row in figures.criteria:
         is_manual = row.criterion.check.function in MANUAL_CHECKS
-        if not is_manual and row.criterion.adjustment is None:
+        if not is_manual and not row.criterion.adjustment:
             rows.append(row)
     return rows
 
 
 def review_rubric(book: Gradebook) -> RubricReview:
     """Return what stands out in the results of a class."""
-    grades = [grade for grade in book if grade.stored is not None and not grade.is_gone]
+    grades = [grade for grade in book if grade.stored and not grade.is_gone]
     figures = statistics(book, grades)
     automatic = _automatic(figures)
-    passing: list[CriterionFigures] = []
-    failing: list[CriterionFigures] = []
+    passing = []
+    failing = []
     for row in automatic:
         counts = row.counts
         if counts["decided"] < _MIN_DECIDED:
@@ -87,14 +87,14 @@ def _unlike_grades(
 
     The criteria are those of the robot.
     """
-    of_robot = [row.id for row in book.criteria if row.check.subject in ("robot", "urdf")]
+    of_robot = [row.id for row in book.criteria if row.check.is_of_robot]
     by_key = {grade.student.key: grade for grade in grades}
     unlike = []
     for work in figures.equal:
-        if work.equal not in _SAME_ROBOT:
+        if work.equal not in ("the same file", "the same robot"):
             continue
         stored = [by_key[key].stored for key in work.students if key in by_key]
-        results = [one.results for one in stored if one is not None]
+        results = [one.results for one in stored if one]
         different = []
         for name in of_robot:
             statuses = {one[name][1] for one in results if name in one}

@@ -16,7 +16,11 @@ from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric
 
 COUNTS = ("passed", "failed", "skipped", "pending", "errored", "carried", "marked")
-_TENTHS, _MAX_MISTAKES, _MAX_CAUSES = 10, 20, 5
+_TENTHS = 10
+_MAX_MISTAKES = 20
+_MAX_CAUSES = 5
+_Grades = Iterable[StudentGrade]
+_Attention = dict[Reason, list[tuple[str, str]]]  # who, and the detail
 
 
 class _Mistake(NamedTuple):
@@ -84,13 +88,12 @@ class ClassStatistics(NamedTuple):
     all: Summary | None  # None if no grade counts
     open: int  # grades with points that still need manual grading
     late: int  # students
-    tenths: Sequence[
-        Sequence[str]
-    ]  # students in each tenth of the maximum, which itself is in the last one
+    # students in each tenth of the maximum, which itself is in the last one
+    tenths: Sequence[Sequence[str]]
     criteria: Sequence[CriterionFigures]
     mistakes: Sequence[CriterionMistakes]  # those of most students first
     sections: dict[str, Summary]  # without any if there is only one
-    attention: dict[Reason, list[tuple[str, str]]]  # students who need attention, each with details
+    attention: _Attention  # students who need attention, each with details
     equal: Sequence[EqualWork]
     names: dict[str, str]  # of all students, by key
 
@@ -100,10 +103,10 @@ class ClassStatistics(NamedTuple):
         return [mistake for row in self.mistakes for mistake in row.common]
 
 
-def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatistics:
+def statistics(book: Gradebook, grades: _Grades) -> ClassStatistics:
     """Return the statistics of the grades of a class."""
     everyone = list(grades)
-    present = [grade.stored for grade in everyone if grade.stored is not None and not grade.is_gone]
+    present = [grade.stored for grade in everyone if grade.stored and not grade.is_gone]
     enrolled = _find_enrolled(everyone)
     statuses = Counter(grade.status for grade in enrolled)
     counted = [grade for grade in enrolled if grade.is_counted]
@@ -126,7 +129,7 @@ def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatisti
     )
 
 
-def _find_enrolled(grades: Iterable[StudentGrade]) -> list[StudentGrade]:
+def _find_enrolled(grades: _Grades) -> list[StudentGrade]:
     """Return the grades of students on the roster, without those whose submission is gone.
 
     With a final mark, the submission may be gone.
@@ -135,7 +138,7 @@ def _find_enrolled(grades: Iterable[StudentGrade]) -> list[StudentGrade]:
     return [grade for grade in on_roster if grade.has_final or not grade.is_gone]
 
 
-def _tenths(grades: Iterable[StudentGrade], maximum: Decimal) -> list[list[str]]:
+def _tenths(grades: _Grades, maximum: Decimal) -> list[list[str]]:
     """Return the students in each tenth of the maximum; less than nothing is in the first one."""
     tenths = [list[str]() for _ in range(_TENTHS)]
     for grade in grades:
@@ -144,9 +147,9 @@ def _tenths(grades: Iterable[StudentGrade], maximum: Decimal) -> list[list[str]]
     return tenths
 
 
-def _sections(grades: Iterable[StudentGrade]) -> dict[str, Summary]:
+def _sections(grades: _Grades) -> dict[str, Summary]:
     """Return the figures of each section; of none if there is only one."""
-    totals = defaultdict[str, list[Decimal]](list)
+    totals = defaultdict(list)
     for grade in grades:
         totals[grade.student.section].append(grade.total or Decimal(0))
     if len(totals) <= 1:
@@ -154,12 +157,12 @@ def _sections(grades: Iterable[StudentGrade]) -> dict[str, Summary]:
     return {name: summary(section) for name, section in sorted(totals.items())}
 
 
-def _attention(grades: Iterable[StudentGrade]) -> dict[Reason, list[tuple[str, str]]]:
+def _attention(grades: _Grades) -> _Attention:
     """Return the students who need attention, each with details.
 
     They are by reason, in the order of urgency.
     """
-    concerned = defaultdict[Reason, list[tuple[str, str]]](list)
+    concerned = defaultdict(list)
     for grade in grades:
         for reason, detail in grade.concerns.items():
             concerned[reason].append((grade.student.key, detail))
@@ -175,15 +178,17 @@ def summary(totals: Iterable[Decimal]) -> Summary:
 
 
 def _criteria_figures(
-    book: Gradebook, grades: Iterable[StudentGrade]
+    book: Gradebook, grades: _Grades
 ) -> tuple[list[CriterionFigures], list[CriterionMistakes]]:
     """Return the figures of the criteria, and the most common mistakes."""
     counts = defaultdict[str, Counter[str]](Counter)
     earned = defaultdict[str, Decimal](Decimal)
     # By criterion and message; what is measured has a message of its own for each student.
-    mistakes = defaultdict[tuple[str, str], list[_Mistake]](list)
+    mistakes = defaultdict(list)
     for grade in grades:
         for result in grade.results:
+            if grade.has_final and result.is_open:
+                continue
             name = result.criterion.id
             counts[name].update(result.kinds)
             earned[name] += result.points
@@ -201,7 +206,7 @@ def _criteria_figures(
         share = _share(criterion, counts[criterion.id], earned[criterion.id])
         rows.append(CriterionFigures(criterion, counts[criterion.id], share))
     by_number = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))
-    causes = defaultdict[str, list[_CommonMistake]](list)
+    causes = defaultdict(list)
     for (name, _), equal in by_number:
         students = sorted(mistake.student for mistake in equal)
         causes[name].append(_CommonMistake(name, _words(equal), students))
@@ -218,7 +223,8 @@ def _words(mistakes: Sequence[_Mistake]) -> str:
     if len({mistake.message for mistake in mistakes}) == 1:
         return mistakes[0].message
     distances = [mistake.off for mistake in mistakes]
-    least, most = in_millimetres(min(distances)), in_millimetres(max(distances))
+    least = in_millimetres(min(distances))
+    most = in_millimetres(max(distances))
     if least == most:
         return f"{most} off"
     return f"{least.removesuffix(' mm')} to {most} off"
@@ -226,7 +232,7 @@ def _words(mistakes: Sequence[_Mistake]) -> str:
 
 def _share(criterion: Criterion, counts: Counter[str], earned: Decimal) -> float | None:
     decided = counts["decided"]
-    if not decided or criterion.adjustment is not None:
+    if not decided or criterion.adjustment:
         return None
     if criterion.points:
         return float(earned / criterion.points / decided)

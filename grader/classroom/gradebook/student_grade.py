@@ -1,5 +1,6 @@
 """The grade of one student: what counts, what is open, and why a person should look at it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from enum import StrEnum
@@ -82,17 +83,15 @@ class SharedResult(Result):
     @cached_property
     def is_faulty(self) -> bool:
         """Whether the grader failed on the criterion, and nobody has marked it."""
-        return (
-            self.outcome.status == "errored" and self.manual_mark is None and not self.is_adjusted
-        )
+        return self.outcome.status == "errored" and not self.manual_mark and not self.is_adjusted
 
     @cached_property
-    def kinds(self) -> tuple[str, ...]:
+    def kinds(self) -> Sequence[str]:
         """What it counts as in the figures of a class.
 
         This is a mark, a given point, or the status of the check.
         """
-        if self.manual_mark is not None:
+        if self.manual_mark:
             return "marked", "decided"
         if self.carried or self.is_adjusted:
             return "carried", "decided"
@@ -104,7 +103,7 @@ class SharedResult(Result):
     @cached_property
     def mistake(self) -> str:
         """The message about a mistake of the student, as a check found it; empty without one."""
-        is_mistake = self.is_lost and self.manual_mark is None and not self.criterion.bonus
+        is_mistake = self.is_lost and not self.manual_mark and not self.criterion.bonus
         return self.outcome.message if is_mistake else ""
 
     @cached_property
@@ -144,9 +143,8 @@ class StudentGrade:
     report: Report  # its points with the manual marks; without a submission no results
     late: Lateness = _ON_TIME
     final: Mark | None = None  # the mark, comment or excuse of the whole submission
-    older: tuple[
-        str, ...
-    ] = ()  # the criteria (or `grade`) that were marked before the submission changed
+    # the criteria (or `grade`) that were marked before the submission changed
+    older: Sequence[str] = ()
     known: frozenset[Reason] = (
         frozenset()
     )  # what the class says: NOT_ON_ROSTER, UNCLEAR, DAMAGED, GONE, OUTDATED
@@ -159,7 +157,7 @@ class StudentGrade:
     @property
     def final_points(self) -> Decimal | None:
         """The points of the final mark; None without one."""
-        if self.final is not None:
+        if self.final:
             return self.final.points
         return None
 
@@ -174,15 +172,15 @@ class StudentGrade:
 
         The mark has a time, but no digest.
         """
-        mark = self.final if self.stored is not None and self.has_final else None
+        mark = self.final if self.stored and self.has_final else None
         return mark is not None and bool(mark.time) and not mark.submission
 
     @property
     def is_without_robot(self) -> bool:
         """Whether the submission has nothing that is graded automatically, and has no mark."""
-        if self.stored is None or not self.stored.no_robot or self.has_final:
+        if not self.stored or not self.stored.no_robot or self.has_final:
             return False
-        return all(one.manual_mark is None for one in self.results)
+        return all(not one.manual_mark for one in self.results)
 
     @property
     def is_gone(self) -> bool:
@@ -196,12 +194,12 @@ class StudentGrade:
             return "excused"
         if Reason.DAMAGED in self.known:
             return "errored"
-        if self.stored is not None:
+        if self.stored:
             return self.stored.verdict
         return "missing"
 
     @property
-    def results(self) -> tuple[SharedResult, ...]:
+    def results(self) -> Sequence[SharedResult]:
         """The results of the criteria."""
         return cast("tuple[SharedResult, ...]", self.report.results)
 
@@ -216,7 +214,7 @@ class StudentGrade:
 
         It is None for an excuse, and without a submission.
         """
-        if self.has_final or self.stored is None:
+        if self.has_final or not self.stored:
             return self.final_points
         return self.score + self.late.points
 
@@ -233,7 +231,7 @@ class StudentGrade:
 
         All criteria need manual grading, or nothing could be graded.
         """
-        if self.obstacle is None or self.has_final or self.total:
+        if not self.obstacle or self.has_final or self.total:
             return False
         is_ungraded = self.status in ("unreadable", "errored")
         return is_ungraded or all(one.is_open or one.is_faulty for one in self.results)
@@ -267,13 +265,13 @@ class StudentGrade:
     @cached_property
     def concerns(self) -> dict[Reason, str]:
         """Why a person should look at this grade, each reason with its details."""
-        reason = self.stored.reason if self.stored is not None else ""
+        reason = self.stored.reason if self.stored else ""
         reasons = self._reasons(reason)
         details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
-        if self.stored is not None:
+        if self.stored:
             details[Reason.NO_ROBOT] = self.stored.no_robot
         details[Reason.OLDER_MARKS] = ", ".join(self.older)
-        if self.final is not None:
+        if self.final:
             details[Reason.EARLY_MARK] = (
                 f"{self.final.value} instead of {format_points(self.score)}"
             )
@@ -290,7 +288,7 @@ class StudentGrade:
             reasons.add(Reason.SEVERAL)
         if self.is_without_robot:
             reasons.add(Reason.NO_ROBOT)
-        if self.stored is None and reasons.isdisjoint((Reason.UNCLEAR, Reason.DAMAGED)):
+        if not self.stored and reasons.isdisjoint((Reason.UNCLEAR, Reason.DAMAGED)):
             reasons.add(Reason.MISSING)
         if self.has_final:
             reasons -= _OBSTACLES - {Reason.GONE}
@@ -315,7 +313,7 @@ class StudentGrade:
     def _has_older_override(self) -> bool:
         """Whether a mark replaces other points that the changed submission has by the checks."""
         for one in self.results:
-            if one.manual_mark is not None and one.criterion.id in self.older:
+            if one.manual_mark and one.criterion.id in self.older:
                 by_check = one._replace(manual_mark=None)
                 if not by_check.is_open and by_check.points != one.points:
                     return True
@@ -336,7 +334,7 @@ class StudentGrade:
     @property
     def published(self) -> Decimal | None:
         """The grade that is published: the total, unless something is open."""
-        return self.total if self.obstacle is None else None
+        return self.total if not self.obstacle else None
 
     @property
     def is_counted(self) -> bool:

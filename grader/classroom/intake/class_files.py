@@ -6,6 +6,7 @@ Nothing is extracted.
 """
 
 import os
+from collections.abc import Sequence
 from contextlib import suppress
 from functools import lru_cache
 from hashlib import sha256
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.names import last_part
 from grader.base.text import printable_path
 from grader.files.archive import ARCHIVE_ERRORS, error_text
 from grader.files.class_source import ClassDirectory, ClassZip
@@ -74,13 +76,13 @@ class OpenedSubmission(NamedTuple):
     @property
     def has_documents(self) -> bool:
         """Whether it has files whose text may be read for answers."""
-        files = self.tree.files if self.tree is not None else ()
+        files = self.tree.files if self.tree else ()
         return any(path.lower().endswith((*_TEXTS, ".pdf")) for path in files)
 
     def submission(self, rubric: Rubric, opening: Opening = DEFAULTS) -> Submission:
         """Return the submission; raises InputError if it is empty."""
         opening = opening._replace(max_size=self.max_size)
-        if self.tree is None:
+        if not self.tree:
             return read_submission(
                 self.data or b"",
                 identity=self.name,
@@ -98,14 +100,15 @@ class OpenedSubmission(NamedTuple):
 
 
 def open_class_submission(
-    root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str, max_size: int = URDF_LIMIT
+    root: str, paths: Sequence[str], names: Sequence[str], name: str, max_size: int = URDF_LIMIT
 ) -> OpenedSubmission:
     """Open what is at `paths` below a class folder, or in a class zip; raises InputError.
 
     Several files become one submission, called `name`, that contains them as `names`; so does a
     single document, which has its own name.
     """
-    own_names, source = [path.rpartition("/")[2] for path in paths], _open(root)
+    own_names = [last_part(path) for path in paths]
+    source = _open(root)
     is_document = len(paths) == 1 and _is_document(source, paths[0])
     if len(paths) == 1 and not is_document:
         return _open_single(source, paths[0], max_size)
@@ -115,7 +118,7 @@ def open_class_submission(
     )
 
 
-def digest_of_unread(root: str, paths: tuple[str, ...]) -> str:
+def digest_of_unread(root: str, paths: Sequence[str]) -> str:
     """Return the hash of the bytes of files that are no submission.
 
     It is empty if they cannot be read.
@@ -141,23 +144,25 @@ def _open(root: str) -> ClassListing:
 
 
 @lru_cache(maxsize=4)
-def _listing(root: str, _stamp: tuple[int, ...]) -> ClassListing:
+def _listing(root: str, _stamp: Sequence[int]) -> ClassListing:
     return list_class(Path(root))
 
 
 def _open_single(source: ClassListing, path: str, max_size: int) -> OpenedSubmission:
     """Open a folder, an archive, or a URDF under any name."""
-    last, shown = printable_path(path.rpartition("/")[2]), printable_path(path)
+    last = printable_path(last_part(path))
+    shown = printable_path(path)
     if source.is_folder(path):
         return _opened_tree(last, shown, source.folder(path), max_size)
     if not last.lower().endswith((*ROBOT_ENDINGS, ".xml")):
         name = without_endings(last)
         digest = _digest(name, max_size)
-        if (archive := source.archive(path, digest)) is not None:
+        if archive := source.archive(path, digest):
             return OpenedSubmission(name, shown, digest.hexdigest(), None, archive, max_size)
     if not last.lower().endswith(ROBOT_ENDINGS) and not _is_robot(source, path):
         raise InputError(f"{last} is neither a URDF nor a folder, an archive or a document")
-    data, digest = source.read(path, max_size), _digest(last, max_size)
+    data = source.read(path, max_size)
+    digest = _digest(last, max_size)
     digest.update(data)
     return OpenedSubmission(last.rpartition(".")[0] or last, last, digest.hexdigest(), data, None)
 
@@ -176,7 +181,7 @@ def _is_robot(source: ClassListing, path: str) -> bool:
         with source.raw(path) as file:
             return is_robot(file.read)
     except ARCHIVE_ERRORS as error:
-        shown = printable_path(path.rpartition("/")[2])
+        shown = printable_path(last_part(path))
         raise InputError(f"cannot read {shown}: {error_text(error, shown)}") from None
 
 

@@ -9,19 +9,22 @@ No submission is opened.
   `robot.urdf` is saved as `robot-1.urdf`.
 - Moodle (mod/assign/classes/downloader.php): `{full name}_{participant
   id}_assignsubmission_{plugin}[_{file}]`.
+- Blackboard (Learn, "Download Assignment Files"): `{assignment}_{user
+  name}_attempt_{time}_{file}`, and a text `..._{time}.txt` with what the student has written.
 - Students' folders further down: nbgrader's `submitted/{student}/{lab}`, and
   `{team}/Lab6/{student}`.
 """
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import NamedTuple
 
 from grader.base.errors import InputError
 from grader.base.names import folded
+from grader.base.patterns import on_use
 from grader.base.text import enumerated, printable_path
 from grader.classroom.intake.class_files import ClassListing
 from grader.classroom.roster.roster import People, Student, iso_time
@@ -61,11 +64,17 @@ _PATTERNS = {
         r"_assignsubmission_(?:file(?![a-z])|(?P<plugin>[a-z]+))_?(?P<file>.*)\Z",
         re.DOTALL,
     ),
+    "blackboard": re.compile(
+        r"\A.*_(?P<login>[^_]+)_attempt_(?P<date>[0-9]{4}-[0-9]{2}-[0-9]{2})-"
+        r"(?P<hour>[0-9]{2})-(?P<minute>[0-9]{2})-(?P<second>[0-9]{2})_(?P<file>.+)\Z",
+        re.DOTALL,
+    ),
 }
+_COMMENT = on_use(r"_attempt_[0-9-]{19}\.txt\Z")  # Blackboard's, beside each submission
 # Canvas numbers the uploads of all courses in order: a number far below the others' is part of a
 # student's name.
 _MAX_GROWTH = 1000
-_NAME_IN_CANVAS = re.compile(r"[^\x00-,./:-@[-^`{-\x7f\s]*")
+_NAME_IN_CANVAS = on_use(r"[^\x00-,./:-@[-^`{-\x7f\s]*")
 _MAX_ASSIGNMENTS = 10  # that a message names
 _MAX_TIME = 100  # bytes
 
@@ -93,7 +102,10 @@ class NamedPath(NamedTuple):
 
         Canvas writes those of students in lower case.
         """
-        return lms == "moodle" or self.student.name == self.student.name.lower()
+        return lms != "canvas" or self.student.name == self.student.name.lower()
+
+
+NamedPaths = Iterator[NamedPath]
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +160,7 @@ def read_name(name: str, layout: str) -> list[NamedPath]:
     In Canvas, team_7_101_555_lab6.zip is of team and 7, or of team_7 and 101.
     """
     matches = [_read_path(one) for one in _PATTERNS[layout].finditer(name)]
-    is_known = layout == "moodle" or bool(
+    is_known = layout in ("moodle", "blackboard") or bool(
         matches and not matches[0].student.name
     )  # an anonymous student's
     if is_known:
@@ -158,10 +170,12 @@ def read_name(name: str, layout: str) -> list[NamedPath]:
 
 def _read_path(match: re.Match[str]) -> NamedPath:
     text = match.groupdict(default="")
+    if "date" in text:
+        return _read_attempt(match.string, text)
     name = text.get("name", match.string[: match.start()])
-    canvas, moodle = text.get("canvas", ""), text.get("moodle", "")
-    ids = [word for word in (name, canvas, moodle) if word]
-    key = text.get("login") or "_".join(ids)
+    canvas = text.get("canvas", "")
+    moodle = text.get("moodle", "")
+    key = text.get("login") or "_".join(filter(None, (name, canvas, moodle)))
     student = Student(key, name, canvas=canvas, moodle=moodle)
     if "plugin" in text:
         return NamedPath(match.string, student, plugin=text["plugin"], file=text["file"])
@@ -174,7 +188,16 @@ def _read_path(match: re.Match[str]) -> NamedPath:
     )
 
 
-def list_submissions(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
+def _read_attempt(path: str, text: Mapping[str, str]) -> NamedPath:
+    """Return what the parts of a name of Blackboard tell."""
+    time = ":".join(text[unit] for unit in ("hour", "minute", "second"))
+    submitted = f"{text['date']}T{time}"
+    upload = int(re.sub("[^0-9]", "", submitted))
+    student = Student(text["login"], login=text["login"])
+    return NamedPath(path, student, upload=upload, file=text["file"], submitted=submitted)
+
+
+def list_submissions(folder: ClassFolder, layout: str) -> NamedPaths:
     """Yield the submissions by their names.
 
     `aliases` are the numbers of which one is the user's.
@@ -184,7 +207,8 @@ def list_submissions(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
         yield from _folders(folder)
         return
     readings = {name: read_name(name, layout) for name in folder.names}
-    folder.ignore(name for name, entries in readings.items() if not entries)
+    nameless = [name for name, entries in readings.items() if not entries]
+    folder.ignore(name for name in nameless if not _COMMENT.search(name))
     certain = [entries[0].upload for entries in readings.values() if len(entries) == 1]
     first = min(filter(None, certain), default=0)
     for entries in readings.values():
@@ -210,12 +234,12 @@ def names_in(children: Children) -> dict[str, re.Match[str]]:
     matches = {}
     for name in folders + children.files:
         match = _PATTERNS["folders"].fullmatch(name)
-        if match is not None:
+        if match:
             matches[name] = match
     return matches
 
 
-def _folders(folder: ClassFolder) -> Iterator[NamedPath]:
+def _folders(folder: ClassFolder) -> NamedPaths:
     """Yield each folder, archive and URDF, without the prefix of the assignment in its name."""
     read = names_in(folder.children)
     folder.ignore(name for name in folder.names if not {name, f"{name}/"} & read.keys())
@@ -223,7 +247,8 @@ def _folders(folder: ClassFolder) -> Iterator[NamedPath]:
     first_uploads = {match["login"] for match in read.values() if not match["upload"]}
     prefix = _prefix(logins, folder)
     for name, match in read.items():
-        login, ending = match["login"], match["ending"]
+        login = match["login"]
+        ending = match["ending"]
         upload = int(match["upload"] or 0)
         is_known = login in first_uploads or folder.people.knows(_without(prefix, login))
         if upload and not is_known:
@@ -243,7 +268,8 @@ def _prefix(names: Collection[str], folder: ClassFolder) -> str:
 
     This is the rubric's id, or what precedes the ids of most students.
     """
-    knows, own_prefix = folder.people.knows, f"{folder.lab.lower()}-"
+    knows = folder.people.knows
+    own_prefix = f"{folder.lab.lower()}-"
     known = sum(map(knows, names))
     if (
         known < len(names)
@@ -259,14 +285,14 @@ def _prefix(names: Collection[str], folder: ClassFolder) -> str:
 
 def _students_by_assignment(folder: ClassFolder) -> dict[str, list[str]]:
     """Return the students with a folder for each assignment, by its name."""
-    students_by_name: dict[str, list[str]] = defaultdict(list)
+    students_by_name = defaultdict(list)
     for student in sorted(folder.children.folders):
         for name in folder.listing.children(folder.start + student).folders:
             students_by_name[name].append(student)
     return students_by_name
 
 
-def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
+def nbgrader(course: ClassFolder) -> NamedPaths:
     """Yield the submissions for one assignment with their times.
 
     Raises InputError if there is none of its name.
@@ -279,10 +305,7 @@ def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
         wanted = [name for name in students_by_name if folded(name) == folded(folder.lab)]
     if len(wanted) != 1:
         named = (
-            enumerated(
-                [printable_path(name) for name in sorted(students_by_name)], _MAX_ASSIGNMENTS
-            )
-            or "none"
+            enumerated(map(printable_path, sorted(students_by_name)), _MAX_ASSIGNMENTS) or "none"
         )
         raise InputError(f"name the assignment to grade with --assignment; there are: {named}")
     lab = wanted[0]
@@ -315,7 +338,7 @@ def _read_time(folder: ClassFolder, path: str) -> str:
     return time
 
 
-def teams(folder: ClassFolder) -> Iterator[NamedPath]:
+def teams(folder: ClassFolder) -> NamedPaths:
     """Yield the submissions of the students in lab folders.
 
     All other submissions are yielded as a whole.
@@ -331,7 +354,7 @@ def teams(folder: ClassFolder) -> Iterator[NamedPath]:
     )
 
 
-def _student_paths(top: ClassFolder, team: str) -> Iterator[NamedPath]:
+def _student_paths(top: ClassFolder, team: str) -> NamedPaths:
     """Yield the submissions of the students in the lab folders of a team."""
     for lab in filter(top.labs.is_lab, top.children.folders):
         below = top.inside(lab)
@@ -344,7 +367,8 @@ def _student_paths(top: ClassFolder, team: str) -> Iterator[NamedPath]:
         children = below.children._replace(folders=folders)
         inner = replace(below, children=children, people=People(()), lab="")
         for entry in list_submissions(inner, "folders"):
-            name, path = entry.student.login, f"{team}/{lab}/{entry.path}"
+            name = entry.student.login
+            path = f"{team}/{lab}/{entry.path}"
             student = Student(f"{team}/{name}", name, login=name, group=team)
             yield entry._replace(path=path, student=student)
 
@@ -356,8 +380,9 @@ def _students(lab: ClassFolder, team: str, words: Collection[str]) -> set[str]:
     folders of which none is a package or has the name of a part. The folder of the only member
     alone stays with the rest of the repository.
     """
-    people, folders = lab.people, lab.children.folders
-    known = set[str]()
+    people = lab.people
+    folders = lab.children.folders
+    known = set()
     for name, match in names_in(lab.children).items():
         if people.knows(match["login"], team):
             known.add(name.rstrip("/"))

@@ -16,11 +16,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
 from grader.base.text import enumerated, first_lines, printable_path, shell_quoted
 from grader.classroom.intake.class_files import ClassListing, list_class
 from grader.classroom.intake.layouts import (
     ClassFolder,
     NamedPath,
+    NamedPaths,
     is_submission,
     list_submissions,
     names_in,
@@ -34,16 +37,15 @@ from grader.files.limits import PACKAGE_FILES
 from grader.files.tree import parents
 from grader.lab.submission.labs import MAX_WRAPPERS, LabFolders, is_part
 
-_NUMBERED = re.compile(
-    r"(.+?)-[1-9][0-9]?((?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL
-)
+_NUMBERED = on_use(r"(.+?)-[1-9][0-9]?((?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL)
 _MAX_LINES = 200
 _MAX_OWNERS = 10  # students to whom a submission may belong, in a message
 _ANONYMOUS = (
     "this is an anonymous download: its submissions (anon_...) match no student. "
     "Canvas shows the names when the grades are posted: download again then"
 )
-_LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
+_DOWNLOADS = ("canvas", "moodle", "blackboard")
+_LAYOUTS = ("folders", "canvas", "moodle", "blackboard", "teams", "nbgrader")
 
 
 class ClassSubmission(NamedTuple):
@@ -51,8 +53,8 @@ class ClassSubmission(NamedTuple):
 
     student: Student
     root: int  # the index of the class folder or zip
-    paths: tuple[str, ...]  # below it
-    names: tuple[str, ...] = ()  # the student's own of several files
+    paths: Strings  # below it
+    names: Strings = ()  # the student's own of several files
     is_late: bool = False
     submitted: str = ""  # ISO 8601; empty if unknown
 
@@ -66,8 +68,8 @@ class Intake(NamedTuple):
     unmatched: tuple[
         str, ...
     ]  # submissions without a certain student, and which row of the roster assigns them
-    notes: tuple[str, ...]  # what was chosen
-    ignored: tuple[str, ...]  # what in the folders is no submission
+    notes: Strings  # what was chosen
+    ignored: Strings  # what in the folders is no submission
 
 
 def read_class(
@@ -76,7 +78,7 @@ def read_class(
     layout: str = "auto",
     assignment: str = "",
     rubric_id: str = "",
-    folders: tuple[str, ...] = (),
+    folders: Strings = (),
     ignore: Sequence[str] = (),
     gradebook: Path | None = None,
 ) -> Intake:
@@ -97,10 +99,11 @@ def read_class(
     if not folders and rubric_id:
         folders = (rubric_id,)
     labs = LabFolders(folders)
-    submissions: list[ClassSubmission] = []
+    submissions = []
     layouts: dict[str, None] = {}
     for root, (path, (listing, _)) in enumerate(zip(paths, roots, strict=True)):
-        lab, is_explicit = assignment or rubric_id, layout != "auto"
+        lab = assignment or rubric_id
+        is_explicit = layout != "auto"
         top = ClassFolder(
             listing, listing.children(""), "", owners.people, labs, lab, is_explicit, owners.ignored
         )
@@ -148,7 +151,7 @@ def _names_of_roots(paths: Sequence[Path]) -> list[str]:
     )
 
 
-def _paths_in(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
+def _paths_in(folder: ClassFolder, layout: str) -> NamedPaths:
     """Yield the paths of submissions in a class folder with a layout."""
     if layout == "teams":
         return teams(folder)
@@ -159,7 +162,7 @@ def _paths_in(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
 
 def _without_ignored(
     folder: ClassFolder, entries: Iterable[NamedPath], ignore: Sequence[str]
-) -> Iterator[NamedPath]:
+) -> NamedPaths:
     """Yield the entries without those of which a folder or the student has a name to be ignored."""
     names = {*map(plain, ignore)}
     for one in entries:
@@ -176,7 +179,7 @@ def _without_gradebook(folder: ClassFolder, path: Path, gradebook: Path | None) 
 
     A student may submit a folder that looks like one.
     """
-    if gradebook is None or gradebook.resolve().parent != path.resolve():
+    if not gradebook or gradebook.resolve().parent != path.resolve():
         return folder
     own_folders = [name for name in folder.children.folders if name == gradebook.resolve().name]
     folder.ignore(own_folders, "is the gradebook")
@@ -186,7 +189,7 @@ def _without_gradebook(folder: ClassFolder, path: Path, gradebook: Path | None) 
 
 def _prove_layout(folder: ClassFolder) -> str:
     """Return the layout that the names prove, else `teams`, which may be plain folders."""
-    for layout, share in (("moodle", 1), ("canvas", 3)):
+    for layout, share in (("moodle", 1), ("blackboard", 1), ("canvas", 3)):
         fitting = set()
         for name in folder.names:
             if any(entry.is_written_by(layout) for entry in read_name(name, layout)):
@@ -205,12 +208,11 @@ def _inner_class(folder: ClassFolder) -> ClassFolder:
     A download may be in folders that contain nothing else. In a zip, it can be any folder that
     contains all submissions, unless it is itself one.
     """
-    around, is_zip = [folder], isinstance(folder.listing, ClassZip)
+    around = [folder]
+    is_zip = isinstance(folder.listing, ClassZip)
     while len(around) <= MAX_WRAPPERS and (name := _only_folder(around[-1])):
         around.append(around[-1].inside(name))
-        if _prove_layout(around[-1]) in (
-            ["canvas", "moodle", "nbgrader"] if is_zip else ["canvas", "moodle"]
-        ):
+        if _prove_layout(around[-1]) in ([*_DOWNLOADS, "nbgrader"] if is_zip else _DOWNLOADS):
             return around[-1]
     if len(around) == 1 or folder.children.files or not is_zip:
         return folder
@@ -237,7 +239,7 @@ def _submissions_in(
     folder: ClassFolder, entries: Iterable[NamedPath], root: int
 ) -> Iterator[ClassSubmission]:
     """Yield one submission for each student whom the file names identify."""
-    of_student: dict[tuple[Student, str], list[NamedPath]] = defaultdict(list)
+    of_student = defaultdict(list)
     for entry in entries:
         of_student[entry.student, entry.name].append(entry)
     folders = frozenset(folder.children.folders)
@@ -245,7 +247,8 @@ def _submissions_in(
     while of_student:  # of a large class not all is kept twice
         (student, _), own_entries = of_student.popitem()
         kept = _last_versions(folder, own_entries, older)
-        is_late, submitted = any(one.is_late for one in kept), kept[0].submitted
+        is_late = any(one.is_late for one in kept)
+        submitted = kept[0].submitted
         yield ClassSubmission(
             student, root, *_paths_and_names(folder, kept, folders), is_late, submitted
         )
@@ -272,7 +275,7 @@ def _last_versions(
     `robot-1.urdf` is a later `robot.urdf` only if there is a `robot.urdf`.
     """
     own_files = {entry.file for entry in entries}
-    versions: dict[tuple[str, str], list[NamedPath]] = defaultdict(list)
+    versions = defaultdict(list)
     for entry in entries:
         numbered = _NUMBERED.fullmatch(entry.file) if entry.upload else None
         first = numbered[1] + numbered[2] if numbered else ""
@@ -284,20 +287,20 @@ def _last_versions(
             if other.upload < last.upload:
                 older.append((other.path, last.path))
             else:
-                why = f"is not graded: {printable_path(last.path)} counts"
-                folder.ignore([other.path], why)
+                folder.ignore([other.path], f"is not graded: {printable_path(last.path)} counts")
         kept.append(last)
     return kept
 
 
 def _paths_and_names(
     folder: ClassFolder, kept: Sequence[NamedPath], folders: frozenset[str]
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
+) -> tuple[Strings, Strings]:
     """Return the paths of a student's files, or of the folder, and the own names of files.
 
     An empty folder, such as that of an empty text, counts only if there is nothing else.
     """
-    named, full = dict[str, str](), list[str]()
+    named = dict[str, str]()
+    full = []
     tops = {folder.start + one.path: one for one in kept}
     for top, one in tops.items() if len(kept) > 1 else ():
         part = f"{one.plugin}/" if one.plugin else ""
@@ -325,7 +328,8 @@ def _only_file(listing: ClassListing, top: str) -> str:
 
 def _files_below(listing: ClassListing, top: str) -> list[str]:
     """Return the paths of the files below a folder, in order."""
-    files, folders = list[str](), [top]
+    files = []
+    folders = [top]
     for here in folders:
         children = listing.children(here)
         files += [f"{here}/{name}" for name in children.files]
@@ -340,8 +344,9 @@ class _Owners:
     """
 
     def __init__(self, roster: Roster | None, roots: Sequence[tuple[ClassListing, str]]) -> None:
-        self.people, self.roots = People(roster.students if roster is not None else ()), roots
-        self.notes = [*roster.notes] if roster is not None else []
+        self.people = People(roster.students if roster else ())
+        self.roots = roots
+        self.notes = list(roster.notes) if roster else []
         self.ignored: list[str] = []
         self._has_roster = roster is not None
         self._owned: dict[int, ClassSubmission] = {}
@@ -358,11 +363,11 @@ class _Owners:
             self.notes.append(_ANONYMOUS)
             self._unclear.update(range(len(self.people.students)))
         if not self._has_roster:
-            self._visitors = [*submissions]
+            self._visitors = list(submissions)
             return
         self._assign(submissions)
         claims: dict[int, dict[ClassSubmission, int]] = defaultdict(dict)
-        possible: dict[ClassSubmission, tuple[int, ...]] = {}
+        possible = {}
         for one in sorted(
             set(submissions).difference(self._owned.values()),
             key=lambda one: (one.student.key, one.root, one.paths),
@@ -386,7 +391,8 @@ class _Owners:
 
         Return those given, and those equally good.
         """
-        given, contested = set[ClassSubmission](), set[ClassSubmission]()
+        given = set()
+        contested = set()
         for index, claimed in claims.items():
             best = min(claimed.values())
             first = [one for one, by in claimed.items() if by == best]
@@ -413,13 +419,13 @@ class _Owners:
     def _assign(self, submissions: Iterable[ClassSubmission]) -> None:
         """Give students what the roster's column `submission` names."""
         wanted = {index: one for index, one in enumerate(self.people.students) if one.submission}
-        places: dict[str, set[ClassSubmission]] = defaultdict(set)
+        places = defaultdict(set)
         for one in submissions if wanted else ():
             for path in one.paths:
                 places[self._shown(one, path)].add(one)
         for index, student in wanted.items():
             place = _plain_path(student.submission)
-            named = [*(places.get(place) or self._at(place))]
+            named = list(places.get(place) or self._at(place))
             if len(named) == 1:
                 self._owned[index] = named[0]
             else:
@@ -493,7 +499,7 @@ class _Owners:
         """
         students = self.people.students
         unclear = frozenset(students[index].key for index in self._unclear - self._owned.keys())
-        submissions = list[ClassSubmission]()
+        submissions = []
         while self._owned:  # of a large class not all is kept twice
             index, submission = self._owned.popitem()
             claim = submission.student
@@ -502,7 +508,8 @@ class _Owners:
             submissions.append(submission._replace(student=owner))
         submissions += self._submissions_of_visitors()
         submissions.sort(key=lambda submission: submission.student.key)
-        unmatched, ignored = sorted(self._unmatched), first_lines(sorted(self.ignored), _MAX_LINES)
+        unmatched = sorted(self._unmatched)
+        ignored = first_lines(sorted(self.ignored), _MAX_LINES)
         return Intake(
             layout, submissions, unclear, tuple(unmatched), tuple(self.notes), tuple(ignored)
         )

@@ -22,6 +22,8 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 
+from grader.base.grouping import Strings, StringsByName
+from grader.base.patterns import on_use
 from grader.base.text import cut, first_lines, format_points
 from grader.classroom.roster.roster import Student
 from grader.classroom.tables import protected, spelt_out
@@ -32,13 +34,12 @@ from grader.report.criteria import is_manual
 
 MAX_LINES = 40
 _MAX_LINE = 700  # characters: with all lines less than a cell of Excel has
-_OPENING = "Grade"
-_MARK = re.compile(r"<!-- grader ([0-9a-f]{12}) -->")
-_TAG = re.compile(r"<[^<>]*+>")
-_Names = tuple[
+_MARK = on_use(r"<!-- grader ([0-9a-f]{12}) -->")
+_TAG = on_use(r"<[^<>]*+>")
+NamesInZip = tuple[
     dict[str, str], dict[str, str]
 ]  # by the student's key: the path in the zip, or why there is none
-_NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and no zip can have it
+_NOT_UTF8 = on_use(r"[\ud800-\udfff]")  # no name that Canvas has given, and no zip can have it
 _ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
 
@@ -49,9 +50,10 @@ def lost_points(results: Iterable[Result], *, has_open_zeros: bool = False) -> I
     `has_open_zeros` these count as 0.
     """
     for result in results:
-        mark, criterion = result.manual_mark, result.criterion
-        comment = result.comment.text if result.comment is not None else ""
-        if mark is not None:
+        mark = result.manual_mark
+        criterion = result.criterion
+        comment = result.comment.text if result.comment else ""
+        if mark:
             comment = mark.comment
         if result.points < criterion.points or comment or result.why_given:
             is_hidden = (
@@ -101,7 +103,7 @@ def is_own_comment(text: str) -> bool:
     rest = _MARK.sub("", text, count=1)
     return (
         mark is not None
-        and _split_words(rest).startswith(_OPENING)
+        and _split_words(rest).startswith("Grade")
         and mark[1] == _hash_of_words(rest)
     )
 
@@ -120,9 +122,10 @@ def _split_words(text: str) -> str:
     return " ".join(html.unescape(_TAG.sub(" ", text)).split())
 
 
-def moodle_names(students: Collection[Student], report: str) -> _Names:
+def moodle_names(students: Collection[Student], report: str) -> NamesInZip:
     """Return the paths of files called `report`, by the participant numbers of students."""
-    names, without = dict[str, str](), dict[str, str]()
+    names = {}
+    without = {}
     counts = Counter(student.moodle for student in students)
     for student in students:
         if not student.moodle:
@@ -136,16 +139,17 @@ def moodle_names(students: Collection[Student], report: str) -> _Names:
     return names, without
 
 
-def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], report: str) -> _Names:
+def canvas_names(submissions: Collection[tuple[Student, Strings]], report: str) -> NamesInZip:
     """Return the names for students and the paths of their files.
 
     A group that has the same files shares one.
     """
     ending = PurePosixPath(report).suffix
-    users = defaultdict[tuple[str, ...], set[str]](set)
+    users = defaultdict(set)
     for student, paths in submissions:
         users[paths].add(student.canvas)
-    names, without = dict[str, str](), dict[str, str]()
+    names = {}
+    without = {}
     for student, paths in submissions:
         certain = [
             file for path in paths if _is_certain(file := PurePosixPath(path).name, users[paths])
@@ -169,16 +173,17 @@ def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], repor
 
 
 def write_feedback(
-    reports: Mapping[str, bytes], names: Mapping[str, str], report: str
+    reports: Mapping[str, bytes], names: StringsByName, report: str
 ) -> tuple[bytes, dict[str, str]]:
     """Return the zip of the reports by key, and why a student's is not in it.
 
     Its bytes depend on the reports only.
     """
-    contents = defaultdict[str, set[bytes]](set)
+    contents = defaultdict(set)
     for key, data in reports.items():
         contents[names[key]].add(data)
-    files, without = dict[str, bytes](), dict[str, str]()
+    files = {}
+    without = {}
     for key, data in reports.items():
         name = names[key]
         if len(contents[name]) == 1:

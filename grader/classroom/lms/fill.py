@@ -13,26 +13,32 @@ from decimal import ROUND_FLOOR, Decimal
 from typing import NamedTuple
 
 from grader.base.errors import InputError
-from grader.base.text import enumerated, first_lines, format_points, named, people_text, printable
+from grader.base.patterns import on_use
+from grader.base.text import enumerated, first_lines, format_points, people_text, printable
 from grader.classroom.lms.feedback import is_own_comment
 from grader.classroom.lms.forms import IDS, Form
 from grader.classroom.roster.roster import Student, plain
 from grader.classroom.roster.typed_names import number_in
 from grader.classroom.tables import Table, TableRow, read_table
 
-_OPEN, _KEPT, _REFUSED = "without a grade", "kept the comment", "the LMS would refuse the grade"
-_UNKNOWN, _MISSING = "in the file, but not in the class", "in the class, but not in the file"
-_TEST_STUDENT = re.compile(
+_OPEN = "without a grade"
+_KEPT = "kept the comment"
+_REFUSED = "the LMS would refuse the grade"
+_UNKNOWN = "in the file, but not in the class"
+_MISSING = "in the class, but not in the file"
+_TEST_STUDENT = on_use(
     r"(?i)student, test|test student|.*_previewuser\d*"
 )  # of Canvas and Blackboard
 _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
 _POINTS_ROW = "Points Possible"  # in the first cell, of Canvas
-_THOUSANDS = re.compile(
-    r"\s|[.,](?=[^.,\n]*+[.,])"
-)  # in 1.000,00: the last comma or point is decimal
-_COMMA, _WORDS = r"[0-9],[0-9]{1,2}$", r"[^\W\d_]+|\d+"
-_MAX_CHANGES, _MAX_REASONS, _MAX_COLUMNS = 40, 50, 20
+_THOUSANDS = on_use(r"\s|[.,](?=[^.,\n]*+[.,])")  # in 1.000,00: the last comma or point is decimal
+_COMMA = r"[0-9],[0-9]{1,2}$"
+_WORDS = r"[^\W\d_]+|\d+"
+_MAX_CHANGES = 40
+_MAX_REASONS = 50
+_MAX_COLUMNS = 20
 _MAX_CONCERNED = 3  # people who are named for one reason
+_Clues = list[set[str]]  # of a person, the most reliable first
 
 
 class _Note(NamedTuple):
@@ -89,14 +95,17 @@ class _GradeFile(NamedTuple):
 
     def changed(self, row: TableRow, grade: PublishedGrade) -> tuple[TableRow | None, list[_Note]]:
         """Return a row with its grade and comment, or None; and notes on it."""
-        new, who = _grade_text(grade, self), self.who(row)
+        new = _grade_text(grade, self)
+        who = self.who(row)
         obstacle = next(self._obstacles(row, new, grade.why_open or "has no grade"), None)
         if obstacle is not None:
             kind, why = obstacle
             return None, [_Note(kind, who, why)]
-        notes = list[_Note]()
-        grade_column, comment_column = self.roles["grade"], self.roles.get("comment")
-        old, comment = row.value(grade_column), row.value(comment_column)
+        notes = []
+        grade_column = self.roles["grade"]
+        comment_column = self.roles.get("comment")
+        old = row.value(grade_column)
+        comment = row.value(comment_column)
         if not _is_same_grade(old, new):
             if old.casefold() not in _NOT_GRADED:
                 notes.append(_Note("", who, f"was {old}, becomes {new}"))
@@ -110,7 +119,8 @@ class _GradeFile(NamedTuple):
 
     def _obstacles(self, row: TableRow, new: str, why_open: str) -> Iterator[tuple[str, str]]:
         """Yield why a row cannot get a grade, each reason with its kind."""
-        titles, lms = self.table.titles, self.form.lms
+        titles = self.table.titles
+        lms = self.form.lms
         if not new:
             yield _OPEN, why_open
         if len(row.cells) != len(titles):
@@ -121,7 +131,8 @@ class _GradeFile(NamedTuple):
             is_locked = cell.casefold() in words.split() and cell.casefold() != new.casefold()
             if column is not None and is_locked:
                 yield _OPEN, f"{titles[column]!r} is {cell!r} in {lms}"
-        points, maximum = number_in(new) or 0, number_in(self.maximum) or 0
+        points = number_in(new) or 0
+        maximum = number_in(self.maximum) or 0
         if self.form.above and points > maximum:
             above = f"{new} points are above the maximum of {self.maximum}"
             yield _REFUSED, f"{above}: {self.form.above}"
@@ -153,8 +164,9 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
     warnings = _check_maximum(file.maximum, f"{header!r} in {form.lms}", options)
     people = list(file.people.values())
     grade_of_row = _match_rows(people, [grade.student for grade in grades], form.lms)
-    removed, changed = set[TableRow](), dict[TableRow, TableRow]()
-    notes = list[_Note]()
+    removed = set()
+    changed = {}
+    notes = []
     for index, (row, person) in enumerate(file.people.items()):
         new_row = None
         if index in grade_of_row:
@@ -162,7 +174,7 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
             notes += row_notes
         elif not _TEST_STUDENT.fullmatch(person.name or person.login):
             notes.append(_Note(_UNKNOWN, file.who(row), "matches no student for certain"))
-        if new_row is None:
+        if not new_row:
             removed.add(row)
         elif new_row is not row:
             changed[row] = new_row
@@ -173,10 +185,10 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
     filled_table = file.table._replace(rows=tuple(rows))
     already = len(people) - len(removed) - len(changed)
     lines = [f"column {header!r}: {len(changed)} filled in, {already} already the same"]
-    lines += [*_note_lines(notes), *warnings]
+    lines += _note_lines(notes) + warnings
     is_complete = all(note.kind in ("", _OPEN, _KEPT) for note in notes)
     numbers = {grades[at].student.key: people[row].moodle for row, at in grade_of_row.items()}
-    return Filled(filled_table.encoded(), [*map(printable, lines)], is_complete, numbers)
+    return Filled(filled_table.encoded(), list(map(printable, lines)), is_complete, numbers)
 
 
 def _notes_on_missing(
@@ -185,7 +197,7 @@ def _notes_on_missing(
     """Yield a note for each student with a grade or an excuse whom no row matches."""
     for index, grade in enumerate(grades):
         if index not in matched and _grade_text(grade, file):
-            who = named(grade.student.key, grade.student.name)
+            who = grade.student.label
             yield _Note(_MISSING, who, "has a grade or an excuse, but matches no row")
 
 
@@ -201,7 +213,7 @@ def by_reason(notes: Iterable[tuple[str, str, str]]) -> list[str]:
 
     Each note has the kind, who is concerned, and why.
     """
-    concerned = defaultdict[tuple[str, str], list[str]](list)
+    concerned = defaultdict(list)
     for kind, who, why in notes:
         concerned[kind, why].append(who)
     lines = []
@@ -265,24 +277,24 @@ def _read_grade_file(data: bytes, form: Form, options: FillOptions) -> _GradeFil
         raise InputError(
             f"{options.shown} is not a grade file of {form.lms}: its first row has {has}"
         )
-    columns = dict[int, re.Match[str]]()
+    columns = {}
     for at, title in enumerate(table.titles):
         header = form.grade.fullmatch(title)
         is_graded = "maximum" not in roles or at + 1 == roles["maximum"]
-        if header is not None and is_graded:
+        if header and is_graded:
             columns[at] = header
     roles["grade"] = _choose(columns, form, options)
     points_row = None
-    people = dict[TableRow, Student]()
+    people = {}
     for row in table.rows[1:]:
-        if points_row is None and _POINTS_ROW in row.value(0):
+        if not points_row and _POINTS_ROW in row.value(0):
             points_row = row
             continue
         student = _student_in(row, roles)
         if student != Student(""):
             people[row] = student
     maxima = [columns[roles["grade"]].groupdict().get("maximum")]
-    if points_row is not None:
+    if points_row:
         maxima.append(points_row.value(roles["grade"]))
     maxima += [row.value(roles.get("maximum")) for row in people]
     maximum = next(filter(None, maxima), "")
@@ -304,7 +316,7 @@ def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptio
     Without a name, it is the one whose title is most like the title or the id of the lab.
     """
     wanted = options.column.strip()
-    ranks = dict[int, int]()
+    ranks = {}
     for at, header in columns.items():
         rank = _likeness(header, options)
         if rank is not None:
@@ -353,7 +365,7 @@ def _spaced_words(text: str) -> str:
 
 
 def _listed(headers: Sequence[str]) -> str:
-    return enumerated([repr(header) for header in headers], _MAX_COLUMNS)
+    return enumerated(map(repr, headers), _MAX_COLUMNS)
 
 
 def _match_rows(rows: Sequence[Student], students: Sequence[Student], lms: str) -> dict[int, int]:
@@ -369,7 +381,7 @@ def _match_rows(rows: Sequence[Student], students: Sequence[Student], lms: str) 
     return matches
 
 
-def _clues(student: Student, lms: str) -> list[set[str]]:
+def _clues(student: Student, lms: str) -> _Clues:
     """Return what identifies a student, the most reliable first.
 
     These are the id in the LMS, other ids, and the name.
@@ -378,17 +390,19 @@ def _clues(student: Student, lms: str) -> list[set[str]]:
     names.
     """
     lms_id = {"Canvas": student.canvas, "Moodle": student.moodle}.get(lms, "")
-    ids, name = [student.key, student.login, student.sis, student.email], student.name
+    ids = [student.key, student.login, student.sis, student.email]
+    name = student.name
     if not student.is_on_roster:
-        ids, name = [], ""
+        ids = []
+        name = ""
     return [{*map(plain, kind)} - {""} for kind in ([lms_id], ids, [name])]
 
 
 def _index_by_clue(
-    people: Sequence[list[set[str]]],
+    people: Sequence[_Clues],
 ) -> defaultdict[tuple[int, str], set[int]]:
     """Return which people have a clue, by its kind and text."""
-    having = defaultdict[tuple[int, str], set[int]](set)
+    having = defaultdict(set)
     for at, clues in enumerate(people):
         for kind, words in enumerate(clues):
             for word in words:
@@ -396,7 +410,7 @@ def _index_by_clue(
     return having
 
 
-def _fitting(some: Sequence[list[set[str]]], others: Sequence[list[set[str]]]) -> list[list[int]]:
+def _fitting(some: Sequence[_Clues], others: Sequence[_Clues]) -> list[list[int]]:
     """Return the others that fit each of some.
 
     They have its most reliable clue that is known, and no other id in the LMS.

@@ -33,11 +33,11 @@ class Form(NamedTuple):
 
     lms: str
     columns: Mapping[str, str]  # the headers of each role in lower case, besides those of all files
-    needed: tuple[str, ...]  # the roles that a file must have
+    needed: Sequence[str]  # the roles that a file must have
     grade: re.Pattern[
         str
     ]  # the header of an assignment; groups: `title`, perhaps `number` and `maximum`
-    kept: tuple[str, ...] = ()  # headers that stay beside those of roles if other columns go
+    kept: Sequence[str] = ()  # headers that stay beside those of roles if other columns go
     excuse: str = ""  # in place of points
     locked: Mapping[
         str, str
@@ -50,7 +50,7 @@ class Form(NamedTuple):
         role_of = {header: role for role, headers in columns for header in headers.split(" | ")}
         return {
             role: at
-            for at, title in reversed([*enumerate(titles)])
+            for at, title in reversed(list(enumerate(titles)))
             if (role := role_of.get(title.casefold()))
         }
 

@@ -9,7 +9,7 @@ import errno
 import json
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, fields
 from datetime import datetime
@@ -20,13 +20,18 @@ from typing import Any
 import tomli
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings, StringsByName
 from grader.base.names import did_you_mean
 from grader.base.text import printable, printable_path, shell_quoted
 from grader.classroom.roster.lateness import read_time
 from grader.files.reading import URDF_LIMIT, read_capped
 
-RESULTS, GRADES, ROSTER = "results.jsonl", "grades.csv", "roster.csv"
-RUBRIC, MARKS, REPORTS = "rubric", "marks", "reports"
+RESULTS = "results.jsonl"
+GRADES = "grades.csv"
+ROSTER = "roster.csv"
+RUBRIC = "rubric"
+MARKS = "marks"
+REPORTS = "reports"
 CLASS_FILE = "class.toml"
 _LOCK = ".lock"
 _WINDOWS_LOCK_AT = 1 << 30  # beyond the end of the file: others cannot read what is locked
@@ -159,19 +164,19 @@ def batch_lock(folder: Path) -> Iterator[None]:
 class ClassSettings:
     """The inputs and settings of a class. Paths are relative to the gradebook."""
 
-    submissions: tuple[str, ...] = ()
+    submissions: Strings = ()
     layout: str = "auto"
     assignment: str = ""  # of nbgrader
-    ignore: tuple[str, ...] = ()  # names of entries that are no student's
+    ignore: Strings = ()  # names of entries that are no student's
     due: str = ""  # the deadline in ISO 8601
-    parts: tuple[str, ...] = ()  # the ids of those to grade; without any all
+    parts: Strings = ()  # the ids of those to grade; without any all
     max_size: int = URDF_LIMIT  # bytes
     rubric: str = ""  # the copy of the rubric
     rubric_id: str = ""  # known even if an edit breaks the copy
     rubric_hash: str = ""  # of the copy as it was made: another one means that somebody edited it
     roster_hash: str = ""  # of the copy as it was made
-    handed_out: tuple[str, ...] = ()  # hashes of work of the course, which is no equal work
-    arguments: Mapping[str, str] = field(default_factory=dict)  # of xacro
+    handed_out: Strings = ()  # hashes of work of the course, which is no equal work
+    arguments: StringsByName = field(default_factory=dict)  # of xacro
 
     def roots(self, folder: Path) -> tuple[Path, ...]:
         """Return the real paths of the submissions."""

@@ -7,11 +7,12 @@ whom the column `students` names. An export becomes marks where a person changed
 `exported` has hashes of what the cells were, and `submission` the digest of what was graded.
 """
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.grouping import StringsByName
+from grader.base.patterns import on_use
 from grader.base.text import enumerated, quoted
 from grader.classroom.marks.marks import (
     COLUMNS,
@@ -37,7 +38,7 @@ from grader.classroom.roster.typed_names import (
 from grader.lab.rubric.criterion import DEADLINE, GRADE
 from grader.lab.rubric.rubric import Rubric
 
-_EXPORTED = re.compile("(d[0-9a-f]{16})(d[0-9a-f]{16})")
+_EXPORTED = on_use("(d[0-9a-f]{16})(d[0-9a-f]{16})")
 _MAX_DIGITS = 9  # of a number that is compared
 
 
@@ -47,12 +48,12 @@ class MarkImport(NamedTuple):
     students: Sequence[Any]
     rubric: Rubric
     marks: Marks
-    digests: Mapping[str, str]  # of the submissions, by the key of the student
+    digests: StringsByName  # of the submissions, by the key of the student
     answers: Mapping[
         tuple[str, str], Sequence[str]
     ] = {}  # students by criterion and the key of the answer
     points: Mapping[
-        str, Mapping[str, str]
+        str, StringsByName
     ] = {}  # the cells of each student in an export, the total last
 
     def read(self, data: bytes, shown: str) -> tuple[list[Mark], int]:
@@ -114,15 +115,21 @@ class MarkImport(NamedTuple):
             yield {**row, "student": student}
 
     def _students(self, row: Cells) -> Sequence[str]:
-        cell, keys = row["student"], {one.key: one for one in self.students}
-        if "answer" in row:
-            where, named = (row["criterion"], row["answer"]), {*row.get("students", "").split("; ")}
+        cell = row["student"] or row.get("students", "")
+        keys = {one.key: one for one in self.students}
+        criterion = marked_name(row["criterion"])
+        if "answer" in row and criterion != GRADE:
+            where = (criterion, row["answer"])
+            named = {*row.get("students", "").split("; ")}
             if some := [
                 key for key in self.answers.get(where, ()) if key in named or named.isdisjoint(keys)
             ]:
                 return some
-            raise InputError(f"no student has this answer to {where[0]} now: remove the row")
-        if cell in keys or as_number(cell, tuple(keys)):
+            raise InputError(f"no student has this answer to {criterion} now: remove the row")
+        of_lms = [one.key for one in self.students if cell in (one.sis, one.canvas, one.moodle)]
+        is_certain = of_lms and cell.startswith("0")  # which a spreadsheet removes
+        changed = as_number(cell, tuple(keys)) if not is_certain else of_lms
+        if cell in keys or (changed and changed != of_lms):
             return [known("student", cell, keys)]
         return [find_typed(self.students, cell, "; `grades.csv` lists all students").key]
 
@@ -132,7 +139,7 @@ class MarkImport(NamedTuple):
         A comment stays.
         """
         exported = _EXPORTED.fullmatch(row["exported"])
-        if exported is None:
+        if not exported:
             raise InputError(
                 f"{quoted(row['exported'])} in the column `exported` is not what was exported"
             )
@@ -155,7 +162,7 @@ class MarkImport(NamedTuple):
                         f"{name} was {now[name]} and is empty: write `-` to withdraw a mark"
                     )
                 mark = self.marks.counting.get((student, name))
-                comment = mark.comment if mark is not None else ""
+                comment = mark.comment if mark else ""
                 yield {
                     **row,
                     "student": student,
@@ -165,7 +172,7 @@ class MarkImport(NamedTuple):
                 }
 
 
-def exported_text(points: Mapping[str, str]) -> str:
+def exported_text(points: StringsByName) -> str:
     """Return the hashes of the points in a row of an export.
 
     These are that of all criteria, and that of the grade.
@@ -174,7 +181,7 @@ def exported_text(points: Mapping[str, str]) -> str:
     return _hash_points(points, criteria) + _hash_points(points, [total])
 
 
-def _hash_points(points: Mapping[str, str], names: Sequence[str]) -> str:
+def _hash_points(points: StringsByName, names: Sequence[str]) -> str:
     return hash_values(*(_plain(points[name]) for name in names))
 
 

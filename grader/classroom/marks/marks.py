@@ -15,7 +15,7 @@ import re
 import sys
 import unicodedata
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from datetime import MAXYEAR, UTC, datetime, timedelta
 from decimal import Decimal
@@ -25,7 +25,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings, StringsByName
 from grader.base.names import folded
+from grader.base.patterns import on_use
 from grader.base.text import (
     enumerated,
     first_lines,
@@ -45,7 +47,7 @@ from grader.lab.rubric.rubric import Rubric
 
 EXCUSED = "excused"  # in place of points, for GRADE
 COLUMNS = ("time", "by", "student", "criterion", "points", "comment", "submission")
-Cells = Mapping[str, str]  # of a row, by column
+Cells = StringsByName  # of a row, by column
 _Rows = list[tuple[str, Cells]]  # the place of each row, file and line, and its cells
 _TITLES = {*COLUMNS, "answer", "exported", "id"}  # known in any spelling
 SURPLUS = ""  # in place of a title: the cells that have none
@@ -53,12 +55,13 @@ WITHDRAWN = "-"  # in place of points: no formula
 _FLAGS = (
     os.O_RDWR | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 )
-_SAFE = re.compile(r"(?!(?:con|prn|aux|nul|com\d|lpt\d)$)[a-z0-9_]{1,40}")  # no device of Windows
-_DIGEST = re.compile(r"d[0-9a-f]+")
+_SAFE = on_use(r"(?!(?:con|prn|aux|nul|com\d|lpt\d)$)[a-z0-9_]{1,40}")  # no device of Windows
+_DIGEST = on_use(r"d[0-9a-f]+")
 _MAX_MISTAKES = 20
 
 
 Key = tuple[str, str]  # a student and a criterion
+_ReadTable = tuple[Table, Strings, _Rows]  # with the titles of its columns, and its rows
 
 
 class Mark(NamedTuple):
@@ -81,15 +84,18 @@ class Mark(NamedTuple):
         return None
 
 
+_MarkByKey = dict[Key, Mark]
+
+
 _Reader = Callable[[Cells, str], Iterable[Mark]]  # of the marks in the cells of a row, at a place
 
 
 class Marks(NamedTuple):
     """The marks of a class."""
 
-    counting: dict[Key, Mark]  # those that count
-    comments: dict[Key, Mark]  # the newest row where no mark counts
-    newest: dict[Key, Mark]  # the newest rows of any kind
+    counting: _MarkByKey  # those that count
+    comments: _MarkByKey  # the newest row where no mark counts
+    newest: _MarkByKey  # the newest rows of any kind
     ignored: list[str]  # which rows do not count, and why
 
     def add(self, key: Key, rows: Sequence[Mark]) -> None:
@@ -97,7 +103,8 @@ class Marks(NamedTuple):
 
         Raises InputError if they have no order.
         """
-        newest, counting = _newest(rows), _newest([mark for mark in rows if mark.value] or rows)
+        newest = _newest(rows)
+        counting = _newest([mark for mark in rows if mark.value] or rows)
         self.newest[key] = newest
         if counting.value not in ("", WITHDRAWN):
             self.counting[key] = counting._replace(comment=newest.comment)
@@ -109,8 +116,9 @@ class Marks(NamedTuple):
 
         Raises InputError if none would.
         """
-        before, now = self.newest.get(key), datetime.now(UTC)
-        if before is None:
+        before = self.newest.get(key)
+        now = datetime.now(UTC)
+        if not before:
             return _utc_text(now)
         if not before.time:
             raise InputError(
@@ -138,7 +146,8 @@ def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
 
     Raises InputError with a line for each row that cannot be read.
     """
-    most, keys = maxima(rubric), dict.fromkeys(students)
+    most = maxima(rubric)
+    keys = dict.fromkeys(students)
 
     def read(cells: Cells, place: str) -> list[Mark]:
         student = known("student", cells["student"], keys)
@@ -153,7 +162,7 @@ def collect(
     rows: Iterable[tuple[str, Cells]], read: _Reader, mistakes: list[str], ignored: list[str]
 ) -> Marks:
     """Return the marks in rows, each with its place; raises InputError if there are mistakes."""
-    marks_by_key: dict[Key, list[Mark]] = defaultdict(list)
+    marks_by_key = defaultdict(list)
     marks = Marks({}, {}, {}, ignored)
     for place, cells in rows:
         try:
@@ -199,8 +208,7 @@ def maxima(rubric: Rubric) -> dict[str, Decimal]:
     Marks of an adjusted criterion never count: any is valid.
     """
     most = {
-        row.id: row.points if row.adjustment is None else Decimal(MAX_POINTS)
-        for row in rubric.criteria
+        row.id: row.points if not row.adjustment else Decimal(MAX_POINTS) for row in rubric.criteria
     }
     return {
         **most,
@@ -211,7 +219,8 @@ def maxima(rubric: Rubric) -> dict[str, Decimal]:
 
 def mark_in(cells: Cells, key: Key, most: Decimal, place: str) -> Mark:
     """Return the mark in a row; raises InputError, or NotCountedError."""
-    value, submission = cells["points"], cells["submission"]
+    value = cells["points"]
+    submission = cells["submission"]
     if cells[SURPLUS]:
         raise InputError(
             f"{quoted(cells[SURPLUS])} is in no column: a cell that contains a delimiter "
@@ -253,14 +262,14 @@ def _newest(rows: Sequence[Mark]) -> Mark:
     return first
 
 
-def read_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]:
+def read_rows(data: bytes, shown: str) -> _ReadTable:
     """Return a CSV file, the titles of its columns, and its rows.
 
     Raises InputError if two columns have one title.
     """
     table = read_table(data, shown, is_from_person=True)
     header, *lines = table.filled or [TableRow(1, 1, (), "")]
-    titles = list[str]()
+    titles = []
     for title in header.values:
         name = folded(title)
         titles.append(name if name in _TITLES else title.strip())
@@ -286,7 +295,7 @@ def _with_newlines(text: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n").strip()
 
 
-def _whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]:
+def _whole_rows(data: bytes, shown: str) -> _ReadTable:
     """Return the rows of a file of marks; raises InputError if the last mark in it may be cut.
 
     The last row may be cut where it has no line break: it is refused (12.5 cut to 12 is a wrong
@@ -298,7 +307,7 @@ def _whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]
     if titles and not has_needed:
         raise InputError(f"the first line of {shown} must name the columns {enumerated(COLUMNS)}")
     last = table.rows[-1] if table.rows else None
-    if last is None or last.end or last not in table.filled:
+    if not last or last.end or last not in table.filled:
         return table, titles, rows
     is_whole = rows and len(last.cells) == len(titles) and titles[-1] not in COLUMNS[:-1]
     if not is_whole or table.encoding == "windows-1252":
@@ -312,7 +321,7 @@ def _whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]
     return table, titles, rows
 
 
-def _append_rows(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
+def _append_rows(path: Path, rows: Sequence[StringsByName]) -> None:
     """Append rows to a file of marks, all or none, and wait until they are on the disk.
 
     Make the file if necessary.
@@ -351,7 +360,7 @@ def _sync_folder(folder: Path) -> None:
             os.close(handle)
 
 
-def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> bytes:
+def _encoded(data: bytes, rows: Sequence[StringsByName], shown: str) -> bytes:
     """Return what appends rows to a file in its own style.
 
     It has the header or line break that the file lacks.
@@ -370,14 +379,13 @@ def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> byte
     for row in rows:
         cells = []
         for title in titles or COLUMNS:
-            cell = _new_cell(row, title, has_comma=has_comma)
-            cells.append(table.cell(cell))
+            cells.append(table.cell(_new_cell(row, title, has_comma=has_comma)))
         lines.append(table.delimiter.join(cells))
     text = "".join(line + end for line in lines)
     return text.encode(table.encoding, "xmlcharrefreplace")
 
 
-def _new_cell(row: Mapping[str, str], title: str, *, has_comma: bool) -> str:
+def _new_cell(row: StringsByName, title: str, *, has_comma: bool) -> str:
     """Return what a cell of a new row says, as no spreadsheet misreads it."""
     text = row.get(title, "")
     if text != WITHDRAWN:

@@ -1,5 +1,6 @@
 """The statistics of a class on a terminal and as JSON, and what changed in its grades."""
 
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
@@ -76,7 +77,7 @@ def class_statistics(
 
 
 def compare(
-    books: tuple[Path, ...],
+    books: Sequence[Path],
     before: int | None,
     after: int | None,
     kind: OutputFormat,
@@ -90,7 +91,8 @@ def compare(
     if len(books) == 1 and before is None:
         old, new, changed = newest_changes(books[0], after)
     else:
-        old, new = snapshot(books[0], before), snapshot(books[-1], after)
+        old = snapshot(books[0], before)
+        new = snapshot(books[-1], after)
         changed = list(changes(old, new))
     if kind is OutputFormat.JSON:
         from grader.classroom.reports.class_json import render_changes_json

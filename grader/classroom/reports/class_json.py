@@ -116,7 +116,7 @@ _STUDENT = JsonObject(
     {
         "id": (TEXT, "student.key"),
         **inner("student", each(TEXT, "name email section")),
-        "status": {"enum": [*_STATUSES]},
+        "status": {"enum": list(_STATUSES)},
         "reason": (TEXT, lambda one: one.stored.reason if one.stored is not None else ""),
         "score": _report_points("score"),
         "max_score": _report_points("max_score"),

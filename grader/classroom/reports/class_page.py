@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from grader import __version__
+from grader.base.grouping import StringsByName
 from grader.base.text import enumerated, format_points, printable
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.statistics import ClassStatistics
@@ -56,7 +57,7 @@ def render_class_page(
     book: Gradebook,
     grades: Sequence[StudentGrade],
     figures: ClassStatistics,
-    links: Mapping[str, str],
+    links: StringsByName,
     stills: Mapping[str, Still],
 ) -> str:
     """Return the class's page.
@@ -67,7 +68,8 @@ def render_class_page(
     rows = [_row(grade, links) for grade in grades]
     rows.sort(key=lambda row: words.family_name_order(row.name, row.key))
     numbers = {row.key: number for number, row in enumerate(rows)}
-    groups, shown = dict[str, _Group](), dict[str, list[object]]()
+    groups = {}
+    shown = {}
     for name, group in _groups(grades, figures):
         if group.keys:
             groups[name] = group
@@ -83,14 +85,14 @@ def render_class_page(
         "groups": groups,
     }
     distinct: dict[Still, int] = {}
-    robots: list[int] = []  # of each row the number of its picture, -1 without one
+    robots = []  # of each row the number of its picture, -1 without one
     for row in rows:
         still = stills.get(row.key, ())
         if still and len(distinct) < _MAX_STILLS:
             distinct.setdefault(still, len(distinct))
         robots.append(distinct.get(still, -1))
     values["has_stills"] = bool(distinct)
-    data = {"groups": shown, "robots": robots, "stills": [*distinct], "size": [WIDTH, HEIGHT]}
+    data = {"groups": shown, "robots": robots, "stills": list(distinct), "size": [WIDTH, HEIGHT]}
     return render_page("class.html", values, data, _ASSETS)
 
 
@@ -146,12 +148,13 @@ def _bars(figures: ClassStatistics) -> tuple[list[tuple[str, str, int, int, bool
     return bars, f"The bar of {highest} is cut: it would be {most / scale:.1f} times as high."
 
 
-def _row(grade: StudentGrade, links: Mapping[str, str]) -> _StudentRow:
-    student, lost = grade.student, [name for _, name in grade.losses]
+def _row(grade: StudentGrade, links: StringsByName) -> _StudentRow:
+    student = grade.student
+    lost = [name for _, name in grade.losses]
     status = f"{grade.status}, final mark" if grade.final_points is not None else grade.status
     return _StudentRow(
         student.key,
-        student.name or student.key,
+        student.shown_name,
         links.get(student.key, ""),
         student.section,
         status,
@@ -203,8 +206,8 @@ def _groups(
 
     The first ones are the filters at the top.
     """
-    filtered = defaultdict[tuple[int, str], list[str]](list)
-    lost = defaultdict[str, list[str]](list)
+    filtered = defaultdict(list)
+    lost = defaultdict(list)
     has_sections = len({grade.student.section for grade in grades}) > 1
     for grade in grades:
         key = grade.student.key

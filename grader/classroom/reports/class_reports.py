@@ -5,12 +5,14 @@ import unicodedata
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache, partial
+from itertools import starmap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote
 
 from grader import __version__
 from grader.base.errors import InputError, MachineError, RubricError
+from grader.base.patterns import on_use
 from grader.base.text import (
     by_name,
     counted,
@@ -43,7 +45,7 @@ if TYPE_CHECKING:
     from grader.report.drawing.still import Still
 
 # No device of Windows, no class's page, and nothing that ends like a name with a digest.
-_SAFE = re.compile(
+_SAFE = on_use(
     r"(?i)(?!(?:con|prn|aux|nul|com\d|lpt\d)(?:\.|$)|index$|.*-[0-9a-f]{64}$)[\w=][\w.@+=,'()-]{0,39}(?<!\.)"
 )
 _CLASS_PAGE = "index.html"
@@ -55,6 +57,7 @@ _MOVED = (
     "The submission has moved or changed since it was graded, so this report has no details: "
     "run `grader batch` again."
 )
+_TextOf = Mapping[str, str]  # by the key of a student
 
 
 class ReportRun(NamedTuple):
@@ -62,7 +65,7 @@ class ReportRun(NamedTuple):
 
     gradebook: Path
     folder: Path  # to write into
-    formats: tuple[Format, ...]
+    formats: Sequence[Format]
     answers: Path | None = None  # the model answers
     class_page: str = ""  # its address as seen from a report, if it is written
     time: str = ""  # of the newest run: workers read the gradebook once for it
@@ -103,7 +106,7 @@ def make_report(
     person did. Without notes, the report is the same as that of `grader grade`. A submission that
     has changed since has its points only. Hints that are `kept` are not searched again.
     """
-    if grade.stored is not None:
+    if grade.stored:
         kept = kept or KeptReports(book.folder)
         again = _graded_again(book, grade, grade.stored, kept if has_hints else None)
         report, _ = book.with_marks(again, grade.stored)
@@ -116,8 +119,7 @@ def make_report(
     if has_marks or grade.has_final or grade.late.points:
         counting = Grade(grade.total, grade.late.points, grade.final_points is not None)
     notes = (*report.notes, *list_notes(grade, report))
-    student = grade.student.name or grade.student.key
-    return report._replace(notes=notes, grade=counting, student=student)
+    return report._replace(notes=notes, grade=counting, student=grade.student.shown_name)
 
 
 def list_notes(grade: StudentGrade, report: Report) -> Iterator[str]:
@@ -125,8 +127,9 @@ def list_notes(grade: StudentGrade, report: Report) -> Iterator[str]:
 
     They are on the mark, the excuse or the comment of the whole, graders, and lateness.
     """
-    mark, late = grade.final, grade.late
-    if mark is not None:
+    mark = grade.final
+    late = grade.late
+    if mark:
         by = by_name(mark.by)
         what = f"Excused{by}." if grade.is_excused else f"Comment{by}:"
         if mark.points is not None:
@@ -136,13 +139,14 @@ def list_notes(grade: StudentGrade, report: Report) -> Iterator[str]:
                 "criteria."
             )
         yield " ".join((what, *mark.comment.split()))
-    people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
+    people = {row.manual_mark.by for row in report.results if row.manual_mark}
     if people and not grade.has_final:
         is_automatic = any(not (row.manual_mark or row.is_open) for row in report.results)
         graders = by_name(enumerated(sorted(filter(None, people))))
         yield f"Graded {'automatically, and manually' if is_automatic else 'manually'}{graders}."
     if late.points and grade.total is not None:
-        points, total = format_points(-late.points), format_points(grade.total)
+        points = format_points(-late.points)
+        total = format_points(grade.total)
         yield f"{late.reason}: the late penalty is {points} points, the grade is {total}"
     elif late.reason:
         yield late.reason
@@ -156,7 +160,7 @@ def _graded_again(
     It has its details if the submission is still there, and hints if what is kept of them is given.
     """
     submission = book.reopened(stored) if stored.verdict != "errored" else None
-    if submission is None:
+    if not submission:
         report = book.report(stored)
         if stored.verdict == "graded":
             return report._replace(notes=(_MOVED,))
@@ -164,7 +168,7 @@ def _graded_again(
             return report._replace(notes=(f"{stored.reason}. {_SUBMIT_AGAIN}",))
         return report
     report = grade_opened(book.rubric, submission, book.settings.parts, is_one_of_class=True)
-    if kept is None or book.rubric.hints == "none" or not report.has_failures:
+    if not kept or book.rubric.hints == "none" or not report.has_failures:
         return report
     return kept.with_hints(report, submission, hash_values(stored.context, book.rubric.sha256))
 
@@ -190,7 +194,7 @@ def _keep(
     kept: KeptReports,
     done: Mapping[str, _Done],
     paths: Mapping[str, Sequence[Path]],
-    shown: Mapping[str, str],
+    shown: _TextOf,
 ) -> dict[str, Mapping[str, Any]]:
     """Keep what is known of the reports that were written, by their paths.
 
@@ -217,8 +221,9 @@ def write_reports(
     Raises InputError and RubricError, which concern all reports.
     """
     make_folder(run.folder)
-    book, kept = Gradebook(run.gradebook), KeptReports(run.gradebook)
-    grades = [grade for grade in book if grade.stored is not None or grade.has_final]
+    book = Gradebook(run.gradebook)
+    kept = KeptReports(run.gradebook)
+    grades = [grade for grade in book if grade.stored or grade.has_final]
     files = file_names([grade.student.key for grade in grades])
     run = run._replace(time=book.run.time)
     if Format.HTML in run.formats:
@@ -226,22 +231,21 @@ def write_reports(
     paths = {key: _list_paths(run, name) for key, name in files.items()}
     context = _context(book, run)
     shown = {grade.student.key: _shown_in(book, grade, context) for grade in grades}
-    changed = dict[str, str]()
+    changed = {}
     for key in _find_outdated(kept, shown, paths):
         changed[key] = files[key]
     done = _render_reports(run, changed, terminal, jobs, timeout) if changed else {}
     if done:
-        new_hints = _keep(kept, done, paths, shown)
-        kept.save(new_hints, book.settings.roots(book.folder))
+        kept.save(_keep(kept, done, paths, shown), book.roots)
     lost = {key: one.why_lost for key, one in done.items() if one.why_lost}
     if Format.HTML in run.formats:
-        pages, first_paths = dict[str, str](), dict[str, str]()
+        pages = {}
+        first_paths = {}
         for key, name in files.items():
             if key not in lost:
                 pages[key] = name
                 first_paths[key] = str(paths[key][0])
-        stills = _collect_stills(done, kept, first_paths)
-        _place_class_page(book, run, pages, stills)
+        _place_class_page(book, run, pages, _collect_stills(done, kept, first_paths))
     _tell_written(book, run, len(files) - len(lost), lost, terminal)
 
 
@@ -255,7 +259,7 @@ def _path_of_class_page(run: ReportRun) -> str:
 
 
 def _find_outdated(
-    kept: KeptReports, shown: Mapping[str, str], paths: Mapping[str, Sequence[Path]]
+    kept: KeptReports, shown: _TextOf, paths: Mapping[str, Sequence[Path]]
 ) -> list[str]:
     """Return the students whose reports do not show what they should."""
     outdated = []
@@ -266,7 +270,7 @@ def _find_outdated(
 
 
 def _collect_stills(
-    done: Mapping[str, _Done], kept: KeptReports, paths: Mapping[str, str]
+    done: Mapping[str, _Done], kept: KeptReports, paths: _TextOf
 ) -> "dict[str, Still]":
     """Return the small pictures of students' robots, of new and of older reports."""
     stills = {}
@@ -276,7 +280,7 @@ def _collect_stills(
 
 
 def _place_class_page(
-    book: Gradebook, run: ReportRun, files: Mapping[str, str], stills: Mapping[str, "Still"]
+    book: Gradebook, run: ReportRun, files: _TextOf, stills: Mapping[str, "Still"]
 ) -> None:
     """Write the class's page beside the reports, or in the gradebook above its own folder."""
     if run.folder == run.gradebook / names.REPORTS:
@@ -287,7 +291,7 @@ def _place_class_page(
 
 
 def _tell_written(
-    book: Gradebook, run: ReportRun, count: int, lost: Mapping[str, str], terminal: Terminal
+    book: Gradebook, run: ReportRun, count: int, lost: _TextOf, terminal: Terminal
 ) -> None:
     """Print how many reports were written, and why others were not."""
     terminal.warn(f"{counted(count, 'report')} written to {printable_path(run.folder)}")
@@ -303,7 +307,7 @@ def _list_paths(run: ReportRun, name: str) -> list[Path]:
 
 def _context(book: Gradebook, run: ReportRun) -> str:
     """Return the hash of all that reports depend on besides the students and their submissions."""
-    answers = run.answers.read_bytes() if run.answers is not None else b""
+    answers = run.answers.read_bytes() if run.answers else b""
     files = sorted(path for path in (book.folder / names.RUBRIC).rglob("*") if path.is_file())
     rubric = [(str(path), hash_bytes(path.read_bytes())) for path in files]
     return hash_values(__version__, run.class_page, answers, rubric)
@@ -315,15 +319,16 @@ def _shown_in(book: Gradebook, grade: StudentGrade, context: str) -> str:
     for result in grade.report.results:
         if result.manual_mark or result.comment:
             by_people.append((result.criterion.id, result.manual_mark, result.comment))
-    stored, is_there = grade.stored, False
-    if stored is not None:
+    stored = grade.stored
+    is_there = False
+    if stored:
         is_there = book.is_unchanged(stored)
         stored = stored._replace(run=0)
     facts = grade.student, stored, is_there, grade.late, grade.final, by_people
     return hash_values(context, *facts)
 
 
-def render_reports(run: ReportRun, files: Mapping[str, str], terminal: Terminal) -> dict[str, str]:
+def render_reports(run: ReportRun, files: _TextOf, terminal: Terminal) -> dict[str, str]:
     """Write the reports of students, by their file names; return who has none, and why.
 
     Raises as `write_reports`.
@@ -334,16 +339,17 @@ def render_reports(run: ReportRun, files: Mapping[str, str], terminal: Terminal)
 
 def _render_reports(
     run: ReportRun,
-    files: Mapping[str, str],
+    files: _TextOf,
     terminal: Terminal,
     jobs: int | None = None,
     timeout: float = _SECONDS,
 ) -> dict[str, _Done]:
     """Write the reports of students, by their file names; return what became of each."""
     _opened_gradebook.cache_clear()  # where the workers are in this process
-    written, workers = dict[str, _Done](), jobs or processors()
+    written = {}
+    workers = jobs or processors()
     write = partial(_write_some, run)
-    tasks = [_ReportTask(key, name) for key, name in files.items()]
+    tasks = list(starmap(_ReportTask, files.items()))
     with (
         Processes(workers, timeout, preload=PRELOAD) as executor,
         terminal.show_class("writing reports") as show,
@@ -374,9 +380,10 @@ def _not_written(task: _ReportTask, error: Exception) -> _Done:
 def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[_Done]:
     """Write the reports of some students, in a worker; return what became of them."""
     book, kept = _opened_gradebook(run)
-    done = list[_Done]()
+    done = []
     for task in tasks:
-        kept.used, kept.is_lost = "", not task.has_hints
+        kept.used = ""
+        kept.is_lost = not task.has_hints
         report = make_report(book, book.grade(task.key), has_hints=task.has_hints, kept=kept)
         report = report._replace(class_page=run.class_page)
         for kind in run.formats:
@@ -396,7 +403,7 @@ def _draw_report(report: Report) -> "Still":
     from grader.report.drawing.still import draw_still
 
     picture = draw_report(report)
-    return draw_still(picture.scene) if picture is not None else ()
+    return draw_still(picture.scene) if picture else ()
 
 
 @lru_cache(maxsize=1)
@@ -427,7 +434,7 @@ def _with_digest(key: str) -> str:
 
 
 def write_class_page(
-    book: Gradebook, folder: Path, pages: Mapping[str, str], stills: Mapping[str, "Still"] = {}
+    book: Gradebook, folder: Path, pages: _TextOf, stills: Mapping[str, "Still"] = {}
 ) -> None:
     """Write the class's page into a folder.
 

@@ -55,7 +55,9 @@ _GAP = 2  # characters between two columns
 _MAX_ROWS = 40
 _MAX_COSTS = 3  # criteria named in a row
 _BAR_WIDTH = 40
-_MAX_MISTAKES, _MAX_CAUSES, _MAX_GROUPS = 10, 3, 20
+_MAX_MISTAKES = 10
+_MAX_CAUSES = 3
+_MAX_GROUPS = 20
 _MAX_STEPS = 5  # criteria of a student that changed
 _MANY_EQUAL = 3  # students with equal changes, which are said once
 _TITLES = {
@@ -70,7 +72,7 @@ class _Row(NamedTuple):
     """A row of the table of a class: what it is sorted by, then its cells."""
 
     is_fine: bool  # whether the student needs no attention
-    order: tuple[str, ...]
+    order: Sequence[str]
     name: str
     grade: str
     late: str
@@ -87,7 +89,9 @@ class ClassTable:
     """
 
     def __init__(self, title: str, maximum: Decimal, *, verbose: bool = False) -> None:
-        self.title, self.maximum, self.verbose = title, maximum, verbose
+        self.title = title
+        self.maximum = maximum
+        self.verbose = verbose
         self.rows: list[_Row] = []  # in the order of the first two fields
         self.count = self.attention = self.open = (
             0  # students; of them those who need attention, or manual grading
@@ -102,10 +106,8 @@ class ClassTable:
         self.count += 1
         self.attention += bool(grade.concerns)
         self.open += bool(grade.pending)
-        name = grade.student.name or grade.student.key
-        why_open = (
-            grade.obstacle.name.lower().replace("_", " ") if grade.obstacle is not None else ""
-        )
+        name = grade.student.shown_name
+        why_open = grade.obstacle.name.lower().replace("_", " ") if grade.obstacle else ""
         if grade.obstacle is Reason.PENDING:
             why_open = counted_points(grade.pending)
         order = family_name_order(name, grade.student.key)
@@ -144,7 +146,10 @@ class ClassTable:
 
         Lost points get the rest of the width.
         """
-        names, grades, late, open_points = [], [], [], []
+        names = []
+        grades = []
+        late = []
+        open_points = []
         for row in self.rows:
             names.append(self._label(row.name, row.order[-1]))
             grades.append(row.grade)
@@ -154,7 +159,7 @@ class ClassTable:
         columns[_TITLES["pending"]] = open_points
         for title, cells in columns.items():
             if any(cells):
-                width -= _GAP + max(map(cell_len, [*title.splitlines(), *cells]))
+                width -= _GAP + max(map(cell_len, title.splitlines() + cells))
         columns["lost"] = [_costs(row.losses, width - _GAP) for row in self.rows]
         return {title: cells for title, cells in columns.items() if any(cells)}
 
@@ -191,7 +196,8 @@ def _costs(losses: Sequence[tuple[Decimal, str]], width: int) -> str:
     """
     text = ""
     for most in range(1, _MAX_COSTS + 1):
-        costs, rest = [*losses[:most]], losses[most:]
+        costs = list(losses[:most])
+        rest = losses[most:]
         if rest:
             costs.append((sum((points for points, _ in rest), Decimal(0)), f"{len(rest)} more"))
         longer = ", ".join(f"{name} {format_points(-points)}" for points, name in costs)
@@ -302,7 +308,8 @@ def render_changes(
     changes: Sequence[Change], before: Snapshot, after: Snapshot, console: Console
 ) -> None:
     """Print the two runs, and by reason whose grade changed, by how much, and in which criteria."""
-    first, last = before.run, after.run
+    first = before.run
+    last = after.run
     page = Page(console, [])
     times = [f"run {run.run} of {time_text(run.time)}" for run in (first, last)]
     if not after.is_recorded:
@@ -350,7 +357,8 @@ def _show_equal_changes(criteria: str, changes: Sequence[Change], page: Page) ->
 
 def _changed_grade(change: Change) -> Iterator[str]:
     """Yield the grade before and after, and what else its student sees of the change."""
-    old, new = change.old, change.new
+    old = change.old
+    new = change.new
     grade = _before_and_after(
         change.before, change.after, (_without_points(old), _without_points(new))
     )

@@ -63,7 +63,7 @@ def head_lines(statistics: ClassStatistics) -> Iterator[str]:
     if statistics.late:
         counts.append(f"{statistics.late} late")
     yield ", ".join(counts) or "no students"
-    if statistics.all is not None:
+    if statistics.all:
         yield grades_text(statistics.maximum, statistics.all, is_open=bool(statistics.open))
     if statistics.open:
         verb = "needs" if statistics.open == 1 else "need"

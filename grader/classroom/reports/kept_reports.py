@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 _FILE = "reports.jsonl"
 _PRIVATE = 0o600
 _OWN = "\0"  # in place of the path of the URDF, which may have the name of a student
+_Values = Mapping[str, Any]  # of JSON
 
 
 class WrittenReport(NamedTuple):
@@ -49,9 +50,9 @@ class KeptReports:
 
     def __init__(self, folder: Path) -> None:
         self._file = folder / _FILE
-        self._hints: dict[str, Mapping[str, Any]] = {}
-        self.written: dict[str, WrittenReport] = {}  # by the path of the file
-        self.new: dict[str, Mapping[str, Any]] = {}
+        self._hints = {}
+        self.written = {}  # by the path of the file
+        self.new: dict[str, _Values] = {}
         self.used = ""  # the key of the hints that were asked for last
         self.is_lost = False  # whether their search failed
         if not self._file.is_file():
@@ -93,11 +94,11 @@ class KeptReports:
     def is_current(self, path: Path, shows: str) -> bool:
         """Return whether a file is still there as it was written, and shows this."""
         entry = self.written.get(str(path))
-        if entry is None or entry.shows != shows or not path.is_file():
+        if not entry or entry.shows != shows or not path.is_file():
             return False
         return hash_bytes(path.read_bytes()) == entry.sha256
 
-    def save(self, new: Mapping[str, Mapping[str, Any]], roots: Collection[Path]) -> None:
+    def save(self, new: Mapping[str, _Values], roots: Collection[Path]) -> None:
         """Write what the files that are there show, and the hints on them."""
         there = {path: entry for path, entry in self.written.items() if Path(path).is_file()}
         lines = [json_line({"path": path, **entry._asdict()}) for path, entry in there.items()]
@@ -114,18 +115,18 @@ def _digest_of_content(submission: Submission) -> str:
     if submission.is_single:
         return hash_bytes(content(submission, submission.path or "") or b"")
     tree = submission.whole_tree
-    facts: list[Any] = [submission.path, submission.opening.no_documents, sorted(tree.folders)]
+    facts = [submission.path, submission.opening.no_documents, sorted(tree.folders)]
     for path, file in tree.files.items():
         facts += [path, hash_bytes(file.read(MAX_FILE_SIZE, first=True))]
     return hash_values(*facts)
 
 
-def _list_hints(report: Report, key: str) -> Mapping[str, Any]:
+def _list_hints(report: Report, key: str) -> _Values:
     """Return the hints of a report as plain values."""
     own_path = report.submission.path
-    hints = dict[str, Any]()
+    hints = {}
     for result in report.results:
-        if result.hint is None:
+        if not result.hint:
             continue
         values = result.hint._asdict()
         values["at"] = _without_path(result.hint.at, own_path)
@@ -140,7 +141,7 @@ def _without_path(place: Location | Edit, own_path: str | None) -> list[Any]:
     return [_OWN if path == own_path else path, *rest]
 
 
-def _restored(report: Report, values: Mapping[str, Any]) -> Report:
+def _restored(report: Report, values: _Values) -> Report:
     """Return a report with hints that were kept."""
     own_path = report.submission.path or ""
     hints = {name: _read_hint(kept, own_path) for name, kept in values["found"].items()}
@@ -148,7 +149,7 @@ def _restored(report: Report, values: Mapping[str, Any]) -> Report:
     return report._replace(results=tuple(results), hints_complete=values["is_complete"])
 
 
-def _read_hint(values: Mapping[str, Any], own_path: str) -> Hint:
+def _read_hint(values: _Values, own_path: str) -> Hint:
     """Return a hint of plain values, for a submission whose URDF has this path."""
     path, line, column, calls, *_ = _with_path(values["at"], own_path)
     at = Location(path, line, column, tuple(calls))

@@ -14,11 +14,11 @@ def render_rubric_review(review: RubricReview, width: int) -> str:
     """Return the findings in lines of at most this width, each with what it may mean."""
     rubric = review.figures.rubric
     lines = [f"{rubric.id}: {counted(review.submissions, 'submission')} graded"]
-    findings = [*_finding_lines(review)]
+    findings = list(_finding_lines(review))
     if not findings:
         lines += ["", "Nothing stands out: no criterion passes or fails everywhere."]
     folded = []
-    for line in [*lines, *findings]:
+    for line in lines + findings:
         folded += textwrap.wrap(printable(line), width, subsequent_indent="  ") or [""]
     return without_commands("\n".join([*folded, ""]))
 

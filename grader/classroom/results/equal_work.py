@@ -5,9 +5,10 @@ from collections.abc import Collection, Iterable
 from itertools import starmap
 from typing import NamedTuple
 
+from grader.base.grouping import Strings
 from grader.classroom.results.results import StoredResult
 from grader.files.reading import hash_bytes
-from grader.lab.checks.registry import GRAPH_CHECKS
+from grader.lab.checks.registry import GRAPH_CHECKS, RECORDING_CHECKS
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.submission import Submission
 from grader.ros.api import Read, robot_hash, written_form
@@ -17,6 +18,7 @@ _MAX_SHARING = 4
 _DIGITS = 16  # of a hash
 _LABELS = {
     "urdf": "the same file",
+    "recording": "the same recording",
     "robot": "the same robot",
     "written": "the same links, joints and materials",
     "graph": "the same graph of nodes, but for names",
@@ -26,7 +28,7 @@ _LABELS = {
 class EqualWork(NamedTuple):
     """Students with work that is equal, and what of it is: "the same file"."""
 
-    students: tuple[str, ...]
+    students: Strings
     equal: str
 
 
@@ -37,9 +39,11 @@ def hash_forms(
 
     `urdf` is that of the file, `robot` that of its normal form, `written` that of its links, joints
     and materials as written; `graph` that of what its first launch file connects, without names, if
-    a rubric asks about the graph.
+    a rubric asks about the graph; `recording` that of its longest recording, if a rubric asks
+    about recordings.
     """
-    urdf, forms = submission.urdf, dict[str, str]()
+    urdf = submission.urdf
+    forms = dict[str, str]()
     if isinstance(urdf, Read):
         if urdf.data.strip():
             forms |= {"urdf": hash_bytes(urdf.data), "robot": robot_hash(urdf.reading)}
@@ -54,10 +58,15 @@ def hash_forms(
         launches = launch_files(submission.workspace) if submission.packages else []
         if launches:
             forms["graph"] = graph_form(launch_graph(submission.workspace, launches[0]))
+    if any(criterion.check.name in RECORDING_CHECKS for criterion in rubric.criteria):
+        from grader.ros.api import read_longest_recording  # late: few labs ask
+
+        recording = read_longest_recording(submission.tree)
+        forms["recording"] = recording.hash if recording else ""
     return {name: form[:_DIGITS] for name, form in forms.items() if form}
 
 
-def hash_handed_out(submission: Submission, rubric: Rubric) -> tuple[str, ...]:
+def hash_handed_out(submission: Submission, rubric: Rubric) -> Strings:
     """Return the hashes of work that is no equal work, as the course handed it out."""
     return tuple(hash_forms(submission, rubric, is_handed_out=True).values())
 
@@ -65,18 +74,20 @@ def hash_handed_out(submission: Submission, rubric: Rubric) -> tuple[str, ...]:
 def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> list[EqualWork]:
     """Return the groups of students with equal work, without what the course handed out.
 
-    The same file comes first, then the same robot, the same elements, and the same graph.
+    The same file comes first, then the same recording, the same robot, the same elements, and the
+    same graph. A recording is nobody else's, also of a robot that the course handed out.
     """
-    known, works = {*handed_out}, [stored for stored in results if stored.work]
+    known = {*handed_out}
+    works = [stored for stored in results if stored.work]
     most = max(_MAX_SHARING, len(works) // 10)
     own_works = [
         stored
         for stored in works
         if known.isdisjoint((stored.work.get("urdf"), stored.work.get("robot")))
     ]
-    label_of: dict[tuple[str, ...], str] = {}
+    label_of: dict[Strings, str] = {}
     for kind, label in _LABELS.items():
-        for group in _groups(own_works, kind, known):
+        for group in _groups(works if kind == "recording" else own_works, kind, known):
             robots = {stored.work.get("robot") for stored in group}
             is_rare = len(group) <= most and (kind == "graph" or len(robots) > 1)
             if kind not in ("written", "graph") or is_rare:
@@ -91,7 +102,7 @@ def _groups(
 
     It is not known, and the works come from more than one submission.
     """
-    groups = defaultdict[str, list[StoredResult]](list)
+    groups = defaultdict(list)
     for stored in results:
         form = stored.work.get(kind, "")
         if form and form not in known:

@@ -21,6 +21,7 @@ from typing import Any, Literal, NamedTuple, Self
 from zlib import crc32
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
 from grader.base.text import MAX_NAMED, enumerated, printable_path
 from grader.files.reading import hash_bytes, read_error
 from grader.lab.checks.outcome import Status
@@ -32,7 +33,9 @@ StoredCriterion = (
     tuple[float | None, Status, str, str] | tuple[float | None, Status, str, str, float]
 )
 _DIGITS = 16  # of a hash
-_RUN, _GRADED, _TEXTS = b'{"run":', b'{"student":', b'{"texts":'
+_RUN = b'{"run":'
+_GRADED = b'{"student":'
+_TEXTS = b'{"texts":'
 _CHECKSUM = b',"crc32":'  # of all bytes before it
 
 
@@ -46,12 +49,12 @@ class StoredResult(NamedTuple):
     context: str = ""  # the hash of all that a result depends on besides the submission
     reason: str = ""  # for the verdict, in words
     root: int = 0  # the position of its class folder in the settings of the class
-    paths: tuple[str, ...] = ()  # below the class folder
-    names: tuple[str, ...] = ()  # the student's own of several files
+    paths: Strings = ()  # below the class folder
+    names: Strings = ()  # the student's own of several files
     is_late: bool = False
     submitted: str = ""  # ISO 8601
     person: Mapping[str, str] = {}  # what the names of the files say of the student
-    parts: tuple[str, ...] = ()
+    parts: Strings = ()
     results: Mapping[str, StoredCriterion] = {}
     work: Mapping[str, str] = {}  # hashes of the robot in several forms, for equal work
     answers: Mapping[
@@ -67,7 +70,8 @@ class StoredResult(NamedTuple):
     def line(self) -> bytes:
         """The line of the file, without what is empty, and before it that of the texts."""
         values = self._asdict()
-        files, answers = values.pop("texts"), values.pop("written")
+        files = values.pop("texts")
+        answers = values.pop("written")
         line = json_line(
             {name: value for name, value in values.items() if value or name in ("student", "run")}
         )
@@ -176,7 +180,8 @@ class Results:
         # whether a line since the newest run is damaged, which may be that of a run
         self._is_torn = False
         # A hundred thousand students fit into memory, but not all of their results.
-        self._places, self._texts = dict[str, int](), dict[str, int]()
+        self._places = dict[str, int]()
+        self._texts = dict[str, int]()
         with self._refuse_damage():
             self._find(until)
 
@@ -224,7 +229,7 @@ class Results:
     @property
     def damage(self) -> str:
         """Which lines are damaged; empty without any."""
-        lines = enumerated([*map(str, self.damaged)], MAX_NAMED)
+        lines = enumerated(map(str, self.damaged), MAX_NAMED)
         noun, verb = ("line", "does") if len(self.damaged) == 1 else ("lines", "do")
         if lines:
             where = f"{noun} {lines} of {printable_path(self._file)}"
@@ -274,7 +279,7 @@ class Results:
 
     def all(self) -> Iterator[StoredResult]:
         """Yield the newest result of each student, in the order of the keys."""
-        return (one for one in self.each(self.students) if one is not None)
+        return (one for one in self.each(self.students) if one)
 
     def each(self, keys: Iterable[str]) -> Iterator[StoredResult | None]:
         """Yield the newest result of each of some students, None for one without."""

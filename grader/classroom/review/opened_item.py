@@ -39,15 +39,14 @@ from grader.ros.api import SETUP
 _MAX_PLACES, _AROUND = 3, 6  # places in files, and lines before and after each
 # The codes of what cannot be determined, by what a check looks at.
 _UNKNOWN = {SETUP: "PKG016", "launch": "LCH004"}
-_OF_ROBOT = ("urdf", "robot")  # subjects of checks
 
 
 @lru_cache(maxsize=1)  # a page asks for its pictures one by one
 def _graded_again(book: Gradebook, key: str) -> tuple[Submission, Report]:
     """Return a student's submission as it was graded, and its report. Raises InputError."""
     graded = book.results.of(key)
-    submission = book.reopened(graded) if graded is not None else None
-    if submission is None:
+    submission = book.reopened(graded) if graded else None
+    if not submission:
         command = (
             f"`grader batch NEWPATH --gradebook {shell_quoted(book.folder)}` with its class folder"
         )
@@ -71,12 +70,13 @@ def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
     results = [graded[one.criterion.id] for one in item.all if one.criterion.id in graded]
     if len(results) < len(item.all):
         raise InputError("this criterion is no longer graded for this student")
-    result, outcome = results[0], results[0].outcome
+    result = results[0]
+    outcome = results[0].outcome
     opened = OpenedItem(
         capitalised(outcome.message),
         answer_lines(outcome),
         find_pictures(result, submission) if may_have_pictures(result) else (),
-        [*_paths(book, item, result)],
+        list(_paths(book, item, result)),
     )
     documents = loose_lines(result, submission, is_anonymous=bool(first.number))
     if documents:
@@ -94,12 +94,13 @@ def _paths(book: Gradebook, item: ReviewItem, result: Result) -> Iterator[str]:
 
     The class folder is named if there are several.
     """
-    stored, location = item.members[0].stored, result.outcome.location
-    root = book.settings.roots(book.folder)[stored.root]
+    stored = item.members[0].stored
+    location = result.outcome.location
+    root = book.roots[stored.root]
     above = PurePosixPath(root.name if len(book.settings.submissions) > 1 else "")
     submitted = ", ".join(str(above / path) for path in stored.paths)
-    places = [*evidence_files(result)]
-    if location is not None:
+    places = list(evidence_files(result))
+    if location:
         places.append(
             f"{location.path}, line {location.line}" if counts_lines(location) else location.path
         )
@@ -113,7 +114,7 @@ def _anonymous(opened: OpenedItem, item: ReviewItem, result: Result) -> OpenedIt
     status = result.outcome.status
     question = str(item.criterion.arguments.get("question", ""))
     message = question if status == "pending" else f"the check: {status}"
-    pictures = [*starmap(_without_name, enumerate(opened.pictures, 1))]
+    pictures = list(starmap(_without_name, enumerate(opened.pictures, 1)))
     return opened._replace(message=message, pictures=pictures, paths=(), legend=(), places=())
 
 
@@ -130,22 +131,24 @@ def _with_robot(
 
     The item gets the files around the places that decide its criteria, too.
     """
-    picture, views, legend = draw_report(report), "", list[str]()
+    picture = draw_report(report)
+    views = ""
+    legend = []
     space = None
-    if picture is not None:
+    if picture:
         legend = callout_lines(picture)
         space = space_data(picture, {})
         if is_anonymous and space is not None:
             space = without_names(space)
         views = drawing_element(_without_names(picture) if is_anonymous else picture, legend=False)
     problem_places = dict.fromkeys(
-        place for result in results if (place := _deciding_place(report, result)) is not None
+        place for result in results if (place := _deciding_place(report, result))
     )
     shown = (
         (location_text(one), source_lines(one, report.submission.source, _AROUND))
         for one in problem_places
     )
-    places = [*islice(((words, lines) for words, lines in shown if lines), _MAX_PLACES)]
+    places = list(islice(((words, lines) for words, lines in shown if lines), _MAX_PLACES))
     return opened._replace(views=views, space=space, legend=legend, places=places)
 
 
@@ -165,14 +168,16 @@ def _deciding_place(report: Report, result: Result) -> Location | None:
     It is that of the outcome, else that of what cannot be determined, else that of the link that is
     examined.
     """
-    outcome, criterion, robot = result.outcome, result.criterion, report.submission.robot
-    if outcome.location is not None:
+    outcome = result.outcome
+    criterion = result.criterion
+    robot = report.submission.robot
+    if outcome.location:
         return outcome.location
     if outcome.status == "pending":
         unknown = _unknown_place(report, criterion)
-        if unknown is not None:
+        if unknown:
             return unknown
-    if robot is None or not robot.links or criterion.check.subject not in _OF_ROBOT:
+    if not robot or not robot.links or not criterion.check.is_of_robot:
         return None
     link = criterion.arguments.get("link")
     if isinstance(link, str) and robot.has_link(link):
@@ -187,7 +192,7 @@ def _unknown_place(report: Report, criterion: Criterion) -> Location | None:
 
     This is first searched in a file that its check looks at.
     """
-    if criterion.check.subject in _OF_ROBOT:
+    if criterion.check.is_of_robot:
         problems = [one for one in report.problems if one.kind.effect == "undetermined"]
     else:
         own_codes = [_UNKNOWN[name] for name in criterion.check.about.looks_at if name in _UNKNOWN]

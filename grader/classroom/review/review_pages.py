@@ -6,6 +6,7 @@ These are one item in words and pictures, the end of the review, and a message.
 from collections.abc import Mapping, Sequence
 from datetime import datetime
 from decimal import Decimal
+from itertools import starmap
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -42,6 +43,7 @@ _SCRIPTS = f"{SPACE_SCRIPTS} review.js"
 _ASSETS = Assets("text.css robot.css review.css", _SCRIPTS, STYLE, _SOURCES, _FILES)
 NO_ANSWER = "No answer"
 _DECIMALS = Decimal("0.0001")
+_Marks = Sequence[Mark | None]
 
 
 class SimilarItem(NamedTuple):
@@ -100,7 +102,8 @@ def item_page(
 
     The addresses of the pictures are ADDRESS/picture/1 and so on. `similar` are items by address.
     """
-    criterion, members = item.criterion, [member.label for member in item.members]
+    criterion = item.criterion
+    members = [member.label for member in item.members]
     marks = [shown.members[0].mark for shown in item.all]
     each = [
         (shown.criterion.title, shown.criterion.id, format_points(shown.criterion.points))
@@ -112,11 +115,13 @@ def item_page(
     for number, picture in enumerate(opened.pictures, 1):
         if isinstance(picture, EmbeddedPicture):
             pictures.append((f"{place['address']}/picture/{number}", picture))
-    who, listed = f"{len(members)} students", members
+    who = f"{len(members)} students"
+    listed = members
     if len(members) == 1:
-        who, listed = members[0], []
+        who = members[0]
+        listed = []
     is_older = item.members[0].state == OLDER
-    similar_answers = [_similar_answer(*one) for one in similar.items()]
+    similar_answers = list(starmap(_similar_answer, similar.items()))
     values = {
         **place,
         "title": f"{place['number']} of {place['total']}: {who}, {criterion.title}",
@@ -153,9 +158,10 @@ def _similar_answer(address: str, one: SimilarItem) -> tuple[str, str, list[str]
     return address, f"{people}: {int(100 * one.share)}% the same words", one.text.splitlines()
 
 
-def _marked_data(item: ReviewItem, marks: Sequence[Mark | None]) -> dict[str, Any]:
+def _marked_data(item: ReviewItem, marks: _Marks) -> dict[str, Any]:
     """Return how an item is marked, for the script of its page."""
-    first, each = marks[0], [mark.value if mark else "" for mark in marks]
+    first = marks[0]
+    each = [mark.value if mark else "" for mark in marks]
     return {
         "shown": item.view,
         "points": _total(marks),
@@ -164,20 +170,20 @@ def _marked_data(item: ReviewItem, marks: Sequence[Mark | None]) -> dict[str, An
     }
 
 
-def _total(marks: Sequence[Mark | None]) -> str:
+def _total(marks: _Marks) -> str:
     """Return the points of the marks of an item together; empty if one is missing."""
-    points = [mark.points for mark in marks if mark is not None and mark.points is not None]
+    points = [mark.points for mark in marks if mark and mark.points is not None]
     if len(points) == len(marks):
         return format_points(sum(points, Decimal(0)))
     return ""
 
 
-def _marked_text(marks: Sequence[Mark | None], *, is_older: bool) -> str:
+def _marked_text(marks: _Marks, *, is_older: bool) -> str:
     """Return what is marked of an item: the first mark, with the points of all.
 
     It is empty without one.
     """
-    given = [mark for mark in marks if mark is not None]
+    given = [mark for mark in marks if mark]
     if not given:
         return ""
     text = mark_text(given[0]._replace(value=_total(marks) or given[0].value))

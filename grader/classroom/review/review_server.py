@@ -8,7 +8,7 @@ It answers one request at a time, so that nothing is written concurrently.
 import json
 import re
 from bisect import bisect
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from http import HTTPStatus
 from threading import Lock
@@ -37,7 +37,6 @@ from grader.report.writing import Terminal
 
 _MAX_SIMILAR = 20  # answers on a page
 _LINK = "open-review.html"  # in the gradebook, while the server runs
-_PDF_POLICY = "default-src 'none'; frame-ancestors 'self'"
 _CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
 
 
@@ -51,12 +50,12 @@ class ReviewPage:
         self.session = session
         self._lock = Lock()
 
-    def __call__(self, path: tuple[str, ...], body: bytes | None) -> Response:
+    def __call__(self, path: Sequence[str], body: bytes | None) -> Response:
         """Return the response to a request; errors of the gradebook become messages."""
         with self._lock:
             return self._answer(path, body)
 
-    def _answer(self, path: tuple[str, ...], body: bytes | None) -> Response:
+    def _answer(self, path: Sequence[str], body: bytes | None) -> Response:
         at = self._position(path[0])
         try:
             self.session.refresh()
@@ -69,7 +68,7 @@ class ReviewPage:
             page = pages.error_page(str(error), self.address(self.session.following(at)))
             return html_response(page, HTTPStatus.SERVICE_UNAVAILABLE)
 
-    def _page(self, at: int, path: tuple[str, ...]) -> Response:
+    def _page(self, at: int, path: Sequence[str]) -> Response:
         session = self.session
         is_item = 0 <= at < len(session.places)
         match path:
@@ -90,7 +89,11 @@ class ReviewPage:
                 pictures = enumerate(open_item(session.book, session.item_at(at)).pictures, 1)
                 picture = {str(which): picture for which, picture in pictures}.get(number)
                 if isinstance(picture, EmbeddedPicture):
-                    policy = _PDF_POLICY if picture.kind is PDF else SANDBOX
+                    policy = (
+                        "default-src 'none'; frame-ancestors 'self'"
+                        if picture.kind is PDF
+                        else SANDBOX
+                    )
                     return Response(picture.data, picture.kind.media_type, policy=policy)
         return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
@@ -101,8 +104,9 @@ class ReviewPage:
         return pages.end_page(given, session.left, self._place(at), folder, session.lms)
 
     def _place(self, at: int) -> dict[str, Any]:
-        session, listed = self.session, self.session.listed
-        questions = [*dict.fromkeys(criterion for criterion, _ in session.items)]
+        session = self.session
+        listed = self.session.listed
+        questions = list(dict.fromkeys(criterion for criterion, _ in session.items))
         filters = pages.filters(session.filter, questions, sorted(session.sections.values()))
         return {
             "number": bisect(listed, at),
@@ -113,7 +117,8 @@ class ReviewPage:
 
     def _act(self, at: int, body: bytes) -> Response:
         """Execute an action of the page."""
-        session, sent = self.session, None
+        session = self.session
+        sent = None
         with suppress(ValueError, RecursionError):
             sent = json.loads(body)
         match sent if at >= 0 else None:
@@ -158,8 +163,10 @@ class ReviewPage:
         Of what is sent besides, `to` is `question` for the next one of the student, and `similar`
         has the addresses and views of items that get the same mark.
         """
-        session, to = self.session, sent.get("to")
-        given, similar = sent.get("similar"), []
+        session = self.session
+        to = sent.get("to")
+        given = sent.get("similar")
+        similar = []
         for address, view in given.items() if isinstance(given, dict) else ():
             similar.append((self._position(address), str(view)))
         for position in (at, *(position for position, _ in similar)):
@@ -208,7 +215,8 @@ def review_in_browser(
     if not session.places:
         return "nothing needs manual grading\n"
     warn_without_locks(session.folder, terminal.warn)
-    page, marks = ReviewPage(session), session.file
+    page = ReviewPage(session)
+    marks = session.file
     with LocalServer(page, port) as server:
         if is_open_in_libreoffice(marks):
             shown = printable_path(marks)
@@ -217,7 +225,8 @@ def review_in_browser(
                 "remove new marks"
             )
         address = f"{server.url}{page.address(session.following())}"
-        file, ending = session.folder / _LINK, "Ctrl-C ends the review, all marks are kept"
+        file = session.folder / _LINK
+        ending = "Ctrl-C ends the review, all marks are kept"
         with shown_until_interrupted(address, file, terminal, ending, opens=opens):
             server.serve_forever()
     write_grades(Gradebook(session.folder))

@@ -30,25 +30,24 @@ from grader.classroom.gradebook.review_items import (
     Place,
     ReviewFilter,
     ReviewItem,
-    ReviewStudent,
     review_items,
 )
 from grader.classroom.gradebook.student_grade import pending_words
 from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.marks.gradebook_folder import CLASS_FILE
-from grader.classroom.marks.marks import Key, Mark, append_marks, mark_file, mark_in
+from grader.classroom.marks.marks import Key, Mark, append_marks, mark_file, mark_in, maxima
 from grader.classroom.review.opened_item import open_item
 from grader.classroom.review.review_pages import NO_ANSWER, SimilarItem
 from grader.classroom.review.similar_answers import share_of_words, split_words
 from grader.classroom.roster.roster import plain
 from grader.classroom.roster.typed_names import find_criterion
 from grader.classroom.tables import write_table
+from grader.lab.rubric.criterion import GRADE
 from grader.lab.rubric.model_answers import load_with_answers
 from grader.report.criteria import alike
 from grader.report.writing import save
 
 CONFIRMED = "!"  # ends what the page sends to replace marks that it was asked about
-_GONE = "this answer has changed, or its students have final marks: go to the next item"
 _READ = (names.RESULTS, CLASS_FILE, names.ROSTER, f"{names.RUBRIC}/**/*.toml", f"{names.MARKS}/*")
 _SHEET_COLUMNS = ("criterion", "answer", "points", "maximum", "comment", "text", "students")
 _PRIVATE = 0o600
@@ -71,11 +70,14 @@ class ReviewSession:
         *,
         is_anonymous: bool = False,
     ) -> None:
-        self.folder, self.by, self.answers, self.is_anonymous = folder, by, answers, is_anonymous
+        self.folder = folder
+        self.by = by
+        self.answers = answers
+        self.is_anonymous = is_anonymous
         self.own = dict[Key, Mark]()
         self._kept = set[Key]()  # marked since the filter was chosen: these stay in the list
         self.filter = shown
-        self.places: tuple[Place, ...] = ()
+        self.places: Sequence[Place] = ()
         self._stamps: object = None
         self.refresh()
         self.show_only(shown)
@@ -108,10 +110,11 @@ class ReviewSession:
         self.shown = {}
         for at, place in enumerate(self.places):
             item = self.items.get(place)
-            members = self.filter.members(item, self._kept) if item is not None else ()
-            if item is not None and members:
+            members = self.filter.members(item, self._kept) if item else ()
+            if item and members:
                 self.shown[at] = item._replace(members=members)
-        self._joined, self.listed = {}, []
+        self._joined = {}
+        self.listed = []
         for _, positions in alike(self.shown, lambda at: self.shown[at].reason):
             first, *others = positions
             also = tuple(self.shown[at] for at in others)
@@ -122,7 +125,7 @@ class ReviewSession:
     @property
     def sections(self) -> dict[str, str]:
         """The sections of the roster, by their names without differences of spelling."""
-        students = self.book.roster.students if self.book.roster is not None else ()
+        students = self.book.roster.students if self.book.roster else ()
         return {plain(one.section): one.section for one in students if one.section}
 
     @property
@@ -142,8 +145,10 @@ class ReviewSession:
         if at in self._joined:
             return self._joined[at]
         item = self.items.get(self.places[at])
-        if item is None:
-            raise InputError(_GONE)
+        if not item:
+            raise InputError(
+                "this answer has changed, or its students have final marks: go to the next item"
+            )
         return item._replace(
             members=ReviewFilter("", self.filter.section, "").members(item) or item.members
         )
@@ -185,12 +190,12 @@ class ReviewSession:
         """
         question = self.places[position][0] if position < len(self.places) else ""
         of_any_state = self.filter._replace(state="")
-        items_of = defaultdict[tuple[int, str, str], list[tuple[int, ReviewStudent]]](list)
+        items_of = defaultdict(list)
         for at, place in enumerate(self.places):
             if place in self.items:
                 for student in of_any_state.members(self.items[place]):
                     items_of[student.order].append((at, student))
-        people = list[tuple[str, int, int]]()
+        people = []
         for _, items in sorted(items_of.items()):
             first, student = items[0]
             unmarked = [at for at, member in items if member.state == UNMARKED]
@@ -228,7 +233,7 @@ class ReviewSession:
         if wanted.criterion:
             find_criterion(self.book.rubric, wanted.criterion)
         if wanted.section and plain(wanted.section) not in sections:
-            known = enumerated([*map(repr, sorted(sections.values()))], MAX_NAMED) or "none"
+            known = enumerated(map(repr, sorted(sections.values())), MAX_NAMED) or "none"
             raise InputError(
                 f"no student has the section {wanted.section!r} in the roster; it has {known}"
             )
@@ -241,7 +246,8 @@ class ReviewSession:
 
         The most similar come first.
         """
-        item, similar_items = self.item_at(at), list[SimilarItem]()
+        item = self.item_at(at)
+        similar_items = []
         own_words = split_words(self._written(item))
         for position, other in self.shown.items():
             is_same = other.criterion.id == item.criterion.id and position != at
@@ -283,11 +289,12 @@ class ReviewSession:
         values = points.split() if item.also else [points.strip()]
         if len(values) != len(item.all) or not all(values):
             raise InputError("points are missing")
-        new, replaced = dict[Key, Mark](), list[Mark]()
+        new = dict[Key, Mark]()
+        replaced = []
         for one, value in zip([*item.all, *items], values + values * len(similar), strict=True):
             new |= self._make_marks(one, value, comment)
             for member in one.members:
-                if member.mark is not None and member.mark.points is not None:
+                if member.mark and member.mark.points is not None:
                     replaced.append(member.mark)
         others = [mark for mark in replaced if mark.by != self.by]
         if others and not shown.endswith(CONFIRMED):
@@ -317,7 +324,7 @@ class ReviewSession:
     def _make_marks(self, item: ReviewItem, points: str, comment: str) -> dict[Key, Mark]:
         """Return the new mark of each student of an item. Raises InputError."""
         cells = {"time": "", "by": self.by, "points": points, "comment": comment, "": ""}
-        marks = dict[Key, Mark]()
+        marks = {}
         for one in item.members:
             key = one.student.key, item.criterion.id
             mark = mark_in(
@@ -361,35 +368,52 @@ def write_sheet(session: ReviewSession, file: Path) -> str:
             f"{printable_path(file)} exists, perhaps with marks in it: name another file "
             "for --sheet"
         )
-    items = [*session.shown.values()]
+    undecided = _list_undecided(session)
+    items = []
+    for item in session.shown.values():
+        members = [one for one in item.members if one.student.key not in undecided]
+        if members:
+            items.append(item._replace(members=members))
     by_student = sorted(
         items, key=lambda item: item.members[0].student.key
     )  # a submission is read once
     texts = {item.place: _sheet_text(session.book, item) for item in by_student}
-    rows = [
-        (
-            *item.place,
-            "",
-            format_points(item.criterion.maximum),
-            "",
-            texts[item.place],
-            _students(item),
-        )
-        for item in items
-    ]
+    rows = []
+    for item in items:
+        most = format_points(item.criterion.maximum)
+        rows.append((*item.place, "", most, "", texts[item.place], _students(item)))
+    most = format_points(maxima(session.book.rubric)[GRADE])
+    for key, files in undecided.items():
+        rows.append((GRADE, "", "", most, "", f"no robot and no package, but {files}", key))
     save(
         file,
         write_table(_SHEET_COLUMNS, rows),
-        session.book.settings.roots(session.folder),
+        session.book.roots,
         _PRIVATE,
     )
     command = (
         f"grader mark --import {shell_quoted(file)} --gradebook {shell_quoted(session.folder)}"
     )
+    unmarked = ReviewFilter(*session.filter[:2])
+    left = sum(len(unmarked.members(item)) for item in items) + len(undecided)
     return (
-        f"{counted(len(items), 'item')} written for {session.left} marks; fill in the points, "
+        f"{counted(len(rows), 'item')} written for {counted(left, 'mark')}; fill in the points, "
         f"then: {command}\n"
     )
+
+
+def _list_undecided(session: ReviewSession) -> dict[str, str]:
+    """Return the files of students without a robot, a package and answers, who need a grade."""
+    if session.is_anonymous or session.filter != ReviewFilter():
+        return {}
+    undecided = {}
+    for grade in session.book:
+        stored = grade.stored
+        if not stored or not grade.is_without_robot or len({*stored.answers.values()}) != 1:
+            continue
+        if not session.book.results.written_answers(stored):
+            undecided[grade.student.key] = stored.no_robot
+    return undecided
 
 
 def _students(item: ReviewItem) -> str:
@@ -402,5 +426,5 @@ def _sheet_text(book: Gradebook, item: ReviewItem) -> str:
         opened = open_item(book, item)
     except InputError as error:
         return f"Not shown: {error}"
-    lines = [*filter(str.strip, opened.answer)] or [opened.message or NO_ANSWER]
+    lines = list(filter(str.strip, opened.answer)) or [opened.message or NO_ANSWER]
     return cut("\n".join(map(printable, [*lines, *opened.paths])), _MAX_TEXT)

@@ -3,10 +3,9 @@
 It is a separate line, never part of a criterion.
 
 As in Canvas (app/models/late_policy.rb), it is a percentage of the maximum for each day begun, and
-never leads below the floor.
+never leads below the floor. It can be points, too, and late tokens cover days.
 """
 
-import re
 from contextlib import suppress
 from datetime import date, datetime, time, timedelta, tzinfo
 from decimal import Decimal
@@ -14,6 +13,7 @@ from math import ceil
 from typing import NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.patterns import on_use
 from grader.base.text import counted
 from grader.classroom.roster.roster import Student
 from grader.lab.rubric.criterion import Late
@@ -27,7 +27,7 @@ _MOODLE_UNITS = (
     (timedelta(hours=1), timedelta(minutes=1)),
 )
 _LAST = 999_999  # microsecond, of a deadline that is the end of a day or a minute
-_IN_MINUTES = re.compile(r"\S+[T ]\d\d(:?\d\d)?(Z|[+-].*)?")  # a time without seconds
+_IN_MINUTES = on_use(r"\S+[T ]\d\d(:?\d\d)?(Z|[+-].*)?")  # a time without seconds
 
 
 class Lateness(NamedTuple):
@@ -66,11 +66,15 @@ def lateness(
             days_late += times.extension_days
         times = times._replace(due=own_deadline, extension_days=0.0, days_late=days_late)
     late = _days_late(times, policy, deadline)
-    days = late.days
-    if policy is None or not days:
+    days = max(0, late.days - times.tokens)
+    if late.days and times.tokens:
+        covered = counted(late.days - days, "day")
+        late = late._replace(reason=f"{late.reason}; tokens cover {covered}")
+    if not policy or not days:
         return late._replace(is_guess=False)
     floor = min(score, rubric.points * policy.floor_percent / 100)
-    reduced = max(floor, score - rubric.points * policy.percent_per_day * days / 100)
+    a_day = policy.points_per_day + rubric.points * policy.percent_per_day / 100
+    reduced = max(floor, score - policy.points - a_day * days)
     return late._replace(points=reduced - score)
 
 
@@ -116,13 +120,13 @@ def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
 
 def _days_late(times: Student, policy: Late | None, deadline: datetime | None) -> Lateness:
     """Return the lateness without a penalty: the days begun, and the reason in words."""
-    grace = timedelta(minutes=float(policy.grace_minutes) if policy is not None else 0)
+    grace = timedelta(minutes=float(policy.grace_minutes) if policy else 0)
     due = deadline
-    if due is None and policy is not None:
+    if due is None and policy:
         due = policy.due
     if times.days_late and times.measured_by and times.due and due is not None:
         measured = _measured_days(times, grace, due)
-        if measured is not None:
+        if measured:
             return measured
     if times.days_late is not None:
         # A whole number is what a person has decided; a fraction is a time, which Moodle has

@@ -14,8 +14,10 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.grouping import StringsByName
 from grader.base.names import folded
-from grader.base.text import counted, first_lines, printable_path
+from grader.base.patterns import on_use
+from grader.base.text import counted, first_lines, named, printable_path
 from grader.classroom.tables import rows_with_lines
 
 _TITLES = {
@@ -39,6 +41,7 @@ _TITLES = {
     "extension": "extension extensiondays extradays",
     "submitted": "submitted submittedat submissiontime",
     "late": "late islate dayslate latedays",
+    "tokens": "tokens latetokens tokensleft",
     "status": "status",
     "submission": "submission",
 }
@@ -57,10 +60,9 @@ _MAX_MISTAKES = 20
 # Characters that count as spaces; Moodle removes the others from the names of files (moodlelib.php,
 # PARAM_FILE).
 _ALIKE = str.maketrans("_-", "  ", "&<>\"`|':\\/")
-_PARTICIPANT = re.compile(r"(?i:(?:part[ie]ci|teilnehm|deelnem)\D*)([0-9]+)")  # Moodle's Identifier
-_DAYS = re.compile(r"([0-9]{1,4}(?:[.,][0-9]{1,4})?)\s*(?:days?)?")
+_PARTICIPANT = on_use(r"(?i:(?:part[ie]ci|teilnehm|deelnem)\D*)([0-9]+)")  # Moodle's Identifier
+_DAYS = on_use(r"([0-9]{1,4}(?:[.,][0-9]{1,4})?)\s*(?:days?)?")
 _LATE = {"yes": True, "true": True, "late": True, "no": False, "false": False, "on time": False}
-_TIMES = ("due", "extension", "submitted")
 # The form of a cell that is no time, and what to write in it.
 _FORMS = {
     "canvas": ("[0-9]+", "a number"),
@@ -71,6 +73,7 @@ _FORMS = {
         r"(?!(?:none|n/a|null|nil|no group)\Z).*\w.*",
         "nothing for a student without a group",
     ),
+    "tokens": (r"[0-9]{1,4}", "a whole number from 0"),
     "submission": (r"(?!/|(?:.*/)?\.\.(?:/|\Z)).+", "a path below the class folder"),
     "due": ("(?!)", "2026-09-01 or 2026-09-01T23:59"),
     "extension": (_DAYS.pattern, "a number of days from 0, or a date"),
@@ -85,6 +88,7 @@ _UNIT = rf"([0-9]{{1,6}}) ({'|'.join(_UNITS)})s?"
 # name; a group.
 _LMS_ID, _EXACT, _WORD, GROUP, _UNCLEAR = range(5)
 _MAX_WORDS = 8
+_Indices = Sequence[int]  # of students
 
 
 class Student(NamedTuple):
@@ -100,7 +104,7 @@ class Student(NamedTuple):
     sis: str = ""  # the id at the university
     canvas: str = ""  # the user id in Canvas
     moodle: str = ""  # the participant id in Moodle
-    aliases: tuple[str, ...] = ()  # further logins, such as that of GitHub
+    aliases: Sequence[str] = ()  # further logins, such as that of GitHub
     group: str = ""
     section: str = ""
     due: str = ""  # ISO 8601, as `submitted`
@@ -108,16 +112,27 @@ class Student(NamedTuple):
     extension_days: float = 0.0
     is_late: bool | None = None
     days_late: float | None = None
+    tokens: int = 0  # days late that cost the student or the team nothing
     measured_by: str = ""  # the LMS that measured the days, from the deadline that it knows
     submission: str = ""  # the path that a person has assigned, relative to its class folder
     is_on_roster: bool = True  # False beside a roster that lacks the student
+
+    @property
+    def label(self) -> str:
+        """The name with the key, or the key alone."""
+        return named(self.key, self.name)
+
+    @property
+    def shown_name(self) -> str:
+        """The name, else the key."""
+        return self.name or self.key
 
 
 class Roster(NamedTuple):
     """The students of a class in the order of the file, and what was not understood in it."""
 
-    students: tuple[Student, ...]
-    notes: tuple[str, ...] = ()
+    students: Sequence[Student]
+    notes: Sequence[str] = ()
 
 
 def plain(word: str) -> str:
@@ -142,8 +157,9 @@ def read_roster(data: bytes, shown: str) -> Roster:
     _, header = next(rows, (1, []))
     fields = _fields(header, shown)
     is_canvas = _is_from_canvas(header)
-    students: dict[int, Student] = {}  # by the line
-    mistakes, notes = list[tuple[int, str]](), list[str]()
+    students = {}  # by the line
+    mistakes = []
+    notes = []
     for line, cells in rows:
         if len(cells) < len(fields) or any(cells[len(fields) :]):
             why = f"has {counted(len(cells), 'cell')}, but the first line has {len(fields)}"
@@ -171,7 +187,7 @@ def read_roster(data: bytes, shown: str) -> Roster:
     return Roster(tuple(students.values()), tuple(first_lines(notes, _MAX_MISTAKES)))
 
 
-def _is_lateness_unclear(student: Student, row: Mapping[str, str]) -> bool:
+def _is_lateness_unclear(student: Student, row: StringsByName) -> bool:
     """Return whether a student is late, and neither column of the row says by how many days."""
     has_days = bool(row["late"]) or _read_days(row["status"]) is not None
     return bool(student.is_late) and student.days_late is None and not has_days
@@ -208,7 +224,7 @@ def _row(fields: Sequence[str], cells: Sequence[str]) -> dict[str, str]:
     return row
 
 
-def _is_no_student_in_canvas(row: Mapping[str, str]) -> bool:
+def _is_no_student_in_canvas(row: StringsByName) -> bool:
     """Return whether a row of Canvas has its test student, or the points possible."""
     has_id = row["id"] or row["sis"] or row["login"]
     return row["name"].casefold() in _TEST_STUDENT or not has_id
@@ -230,7 +246,7 @@ def _normalise(row: dict[str, str]) -> Iterator[str]:
             "date"
         )
     for field, (pattern, meant) in _FORMS.items():
-        time = iso_time(row[field]) if field in _TIMES else ""
+        time = iso_time(row[field]) if field in ("due", "extension", "submitted") else ""
         if row[field] and not time and not re.fullmatch(pattern, row[field], re.IGNORECASE):
             yield f"has {row[field]!r} for {_UNIQUE.get(field, field)}: write {meant}"
             row[field] = ""
@@ -243,13 +259,16 @@ def _student(row: dict[str, str]) -> Student:
     The student has no key if the row identifies none.
     """
     name = row["name"] or f"{row['first']} {row['last']}".strip()
-    login, sis = row["login"] or row["github"], row["sis"]
+    login = row["login"] or row["github"]
+    sis = row["sis"]
     if not sis and row["id"] != row["canvas"]:
         sis = row["id"]
     identifying = (row["id"], row["sis"], login, row["email"], name, row["canvas"], row["moodle"])
-    due, extension_days = row["due"], _days(row["extension"])
+    due = row["due"]
+    extension_days = _days(row["extension"])
     if extension_days is None:  # the column may have a date instead of days
-        due, extension_days = due or row["extension"], 0.0
+        due = due or row["extension"]
+        extension_days = 0.0
     is_late, days_late, measured_by = _lateness(row, extension_days)
     return Student(
         key=printable_path(next(filter(None, identifying), "")),
@@ -267,14 +286,13 @@ def _student(row: dict[str, str]) -> Student:
         extension_days=extension_days,
         is_late=is_late,
         days_late=days_late,
+        tokens=int(row["tokens"] or 0),
         measured_by=measured_by,
         submission=row["submission"].strip("/"),
     )
 
 
-def _lateness(
-    row: Mapping[str, str], extension_days: float
-) -> tuple[bool | None, float | None, str]:
+def _lateness(row: StringsByName, extension_days: float) -> tuple[bool | None, float | None, str]:
     """Return whether a submission is late, by how many days, and the LMS that measured them."""
     status = _read_days(row["status"])
     if row["moodle"] and not (row["late"] or row["submitted"]) and status != 0:
@@ -313,7 +331,7 @@ def _duplicates(students: Mapping[int, Student]) -> Iterator[tuple[int, str]]:
 
     It is a student with an id or address that another student has.
     """
-    wrong: set[int] = set()
+    wrong = set()
     for field, title in _UNIQUE.items():
         first: dict[str, int] = {}
         for line, student in students.items():
@@ -349,11 +367,11 @@ def iso_time(text: str) -> str:
 class _Match(NamedTuple):
     """The indices of the students that a submission may belong to, and by what."""
 
-    students: tuple[int, ...] = ()
+    students: _Indices = ()
     by: int = _UNCLEAR
 
     @property
-    def owners(self) -> tuple[int, ...]:
+    def owners(self) -> _Indices:
         """The student whom it belongs to, or each member of its group.
 
         It is empty if that is not certain.
@@ -368,8 +386,8 @@ class People:
 
     def __init__(self, students: Sequence[Student]) -> None:
         self.students = students
-        self._known: tuple[dict[str, tuple[int, ...]], ...] = ({}, {}, {}, {})
-        self._groups: dict[str, list[int]] = defaultdict(list)
+        self._known: Sequence[dict[str, tuple[int, ...]]] = ({}, {}, {}, {})
+        self._groups = defaultdict(list)
         lms_ids, exact, words, names = self._known
         for index, student in enumerate(students):
             own_index = (index,)  # kept once for all words that only this student has
@@ -383,7 +401,7 @@ class People:
             for word in {plain(student.group), letters(student.group)} - {""}:
                 self._groups[word].append(index)
 
-    def members(self, group: str) -> Sequence[int]:
+    def members(self, group: str) -> _Indices:
         """Return the students of a group."""
         return self._groups.get(plain(group), ())
 
@@ -404,8 +422,7 @@ class People:
         clear which is the user's id.
         """
         if claim.aliases:
-            users = [f"canvas {user}" for user in claim.aliases]
-            return _Match(self._having(users, self._known[_LMS_ID]))
+            return self._one_of_users(claim)
         name = letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
         matched = self._person(claim, name)
         group = [] if claim.group else self._groups.get(name, [])
@@ -421,6 +438,21 @@ class People:
         ):
             return _Match(tuple(sorted({*matched.students, *group})))
         return _Match(tuple(group), GROUP)
+
+    def _one_of_users(self, claim: Student) -> _Match:
+        """Return the student whose id is among the aliases of a claim, after the student's name.
+
+        Without one, it is not clear which of the aliases is the user's id.
+        """
+        users = self._having([f"canvas {user}" for user in claim.aliases], self._known[_LMS_ID])
+        named = []
+        for index in users:
+            name = claim.name.partition(f"_{self.students[index].canvas}")[0]
+            if index in self._known[-1].get(letters(name), ()):
+                named.append(index)
+        if len(named) == 1:
+            return _Match(tuple(named), _LMS_ID)
+        return _Match(users)
 
     def _person(self, claim: Student, name: str) -> _Match:
         """Return the students with the best words of a claim.
@@ -440,9 +472,7 @@ class People:
                 return _Match(tuple(students), min(by, _WORD))
         return _Match()
 
-    def _having(
-        self, words: Iterable[str], table: Mapping[str, tuple[int, ...]]
-    ) -> tuple[int, ...]:
+    def _having(self, words: Iterable[str], table: Mapping[str, tuple[int, ...]]) -> _Indices:
         return tuple(sorted({index for word in words for index in table.get(word, ())}))
 
 

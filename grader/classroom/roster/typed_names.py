@@ -7,9 +7,11 @@ import re
 from collections.abc import Collection, Sequence
 from decimal import Context, Decimal
 from functools import lru_cache
+from typing import NamedTuple
 
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
+from grader.base.patterns import on_use
 from grader.base.text import enumerated, format_points, printable, quoted
 from grader.classroom.roster.roster import Student, plain
 from grader.lab.rubric.criterion import Criterion
@@ -17,7 +19,7 @@ from grader.lab.rubric.rubric import Rubric
 
 _FINEST = Decimal("0.0001")  # points, as in rubrics
 _MAX_LISTED = 10
-_NUMBER = re.compile(
+_NUMBER = on_use(
     r"\s*[+-]?(?=[.,]?[0-9])[0-9]{0,40}(?:[.,][0-9]{0,40})?(?:[eE][+-]?[0-9]{1,9})?\s*"
 )
 
@@ -29,17 +31,21 @@ class NotCountedError(InputError):
 def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
     """Return the only student whom a typed name may mean.
 
-    It is an id, login, address or number, or some words of the name.
+    It is an id, address, number or whole name; else a login, or some words of the name.
 
     Raises InputError: if several students match, it lists them; else similar names; else it ends
     with `advice`.
     """
     word = plain(name)
     words_of_name = word.split() or [""]
-    fitting = []
-    for student, ids, words in _clues(tuple(students)):
-        if word in ids or words.issuperset(words_of_name):
-            fitting.append(student)
+    exact = []
+    similar = []
+    for clues in _clues(tuple(students)):
+        if word in clues.exact:
+            exact.append(clues.student)
+        elif word in clues.logins or clues.words.issuperset(words_of_name):
+            similar.append(clues.student)
+    fitting = exact or similar
     if len(fitting) == 1:
         return fitting[0]
     if fitting:
@@ -59,7 +65,7 @@ def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
 def _guess(students: Sequence[Student], name: str) -> str:
     """Return the question which student was meant; empty if none has a similar name."""
     keys = tuple(student.key for student in students)
-    changed = enumerated([repr(key) for key in as_number(name, keys)], _MAX_LISTED, "or")
+    changed = enumerated(map(repr, as_number(name, keys)), _MAX_LISTED, "or")
     if changed:
         return f"; did you mean {changed}?"
     digits = re.sub(r"\D", "", name)  # with another digit, it is the id of another student
@@ -71,16 +77,26 @@ def _guess(students: Sequence[Student], name: str) -> str:
     return did_you_mean(name, candidates)
 
 
+class _Clues(NamedTuple):
+    """What may be typed for a student."""
+
+    student: Student
+    exact: set[str]  # the ids of the roster, the address and the whole name
+    logins: set[str]
+    words: set[str]  # of the name
+
+
 @lru_cache(maxsize=1)  # a file of marks names many
-def _clues(students: tuple[Student, ...]) -> list[tuple[Student, set[str], set[str]]]:
-    """Return each student with the ids, and the words of the name."""
+def _clues(students: Sequence[Student]) -> list[_Clues]:
+    """Return what may be typed for each student."""
     clues = []
     for student in students:
         user = student.email.partition("@")[0]
-        ids = (student.key, student.login, student.sis, student.canvas, student.moodle)
-        written = (*ids, student.email, user, *student.aliases)
-        words = set(plain(student.name or student.key).split())
-        clues.append((student, {plain(word) for word in written} - {""}, words))
+        ids = (student.key, student.sis, student.canvas, student.moodle)
+        exact = {plain(word) for word in (*ids, student.email, student.name)}
+        logins = {plain(word) for word in (student.login, user, *student.aliases)}
+        words = set(plain(student.shown_name).split())
+        clues.append(_Clues(student, exact - {""}, logins - {""}, words))
     return clues
 
 
@@ -94,12 +110,12 @@ def known(noun: str, cell: str, names: Collection[str]) -> str:
     if not cell:
         raise InputError(f"the row names no {noun}")
     if changed := as_number(cell, tuple(names)):
-        meant = enumerated([*map(repr, changed)], _MAX_LISTED, "or")
+        meant = enumerated(map(repr, changed), _MAX_LISTED, "or")
         raise InputError(f"{noun} {cell!r} may be {meant}, changed by a spreadsheet: correct it")
     raise NotCountedError(f"there is no {noun} {quoted(cell)}")
 
 
-def as_number(cell: str, names: tuple[str, ...]) -> list[str]:
+def as_number(cell: str, names: Sequence[str]) -> list[str]:
     """Return the names that a spreadsheet may have changed into a number.
 
     For example, it changes 0012 into 12, and 123456 into 1.2E+05.
@@ -113,7 +129,7 @@ def as_number(cell: str, names: tuple[str, ...]) -> list[str]:
 
 
 @lru_cache(maxsize=2)
-def _numbers(names: tuple[str, ...]) -> list[tuple[str, Decimal]]:
+def _numbers(names: Sequence[str]) -> list[tuple[str, Decimal]]:
     return [(name, number) for name in names if (number := number_in(name)) is not None]
 
 
@@ -129,7 +145,8 @@ def read_points(text: str, name: str, most: Decimal) -> Decimal:
 
     Raises InputError, which names what they are for and the range.
     """
-    points, text = number_in(text), text.strip()
+    points = number_in(text)
+    text = text.strip()
     if points is not None and not 0 <= points <= most:
         kind = NotCountedError if points > most else InputError
         raise kind(f"{name} is worth 0 to {format_points(most)} points, not {text}")

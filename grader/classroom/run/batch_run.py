@@ -7,6 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from functools import partial
 
+from grader.base.grouping import Strings
 from grader.classroom.intake.submissions import ClassSubmission
 from grader.classroom.results.results import Results, ResultsWriter, StoredResult
 from grader.classroom.run.batch_worker import (
@@ -31,7 +32,10 @@ class Batch:
     def __init__(
         self, results: Results, writer: ResultsWriter, shared: ClassContext, context: str
     ) -> None:
-        self._results, self._writer, self._shared, self._context = results, writer, shared, context
+        self._results = results
+        self._writer = writer
+        self._shared = shared
+        self._context = context
         self._at_work: dict[
             str, tuple[ClassSubmission, StoredResult | None]
         ] = {}  # with the result that is current
@@ -40,7 +44,7 @@ class Batch:
             0,
             self.progress,
         )  # where the file ends once a write is done, and the progress then
-        self._counted = set[tuple[int, tuple[str, ...]]]()
+        self._counted = set[tuple[int, Strings]]()
         self.written = (
             results.unfinished
         )  # the students whose results this run has written, or one that was stopped
@@ -70,7 +74,7 @@ class Batch:
         )
         for results in queue.results(tasks):
             progress = self.progress
-            lines = list[bytes]()
+            lines = []
             for result in results:
                 submission, current = self._at_work.pop(result.student)
                 if (
@@ -94,7 +98,7 @@ class Batch:
     def _task(self, one: ClassSubmission, *, force: bool) -> Task:
         newest = self._results.of(one.student.key)
         current = None
-        if newest is not None and newest.context == self._context and not force:
+        if newest and newest.context == self._context and not force:
             is_final = newest.verdict != "errored" or newest.timeout >= self._shared.timeout
             current = newest if is_final else None
         self._at_work[one.student.key] = one, current
@@ -103,7 +107,7 @@ class Batch:
             one.root,
             one.paths,
             one.names,
-            current.digest if current is not None else "",
+            current.digest if current else "",
             current is not None and current.timeout > 0,
         )
 
@@ -119,7 +123,7 @@ class Batch:
         self, result: StoredResult, submission: ClassSubmission, current: StoredResult | None
     ) -> bytes:
         """Return the line of a result, empty if the file has it."""
-        shown = current if result.verdict == "unchanged" and current is not None else result
+        shown = current if result.verdict == "unchanged" and current else result
         person = {
             name: value for name in _OF_PERSON if (value := getattr(submission.student, name))
         }

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.base.errors import InputError, MachineError, OutOfTime
+from grader.base.grouping import Strings
 from grader.base.processor_time import limit_processor_time
 from grader.base.text import MAX_NAMED, cut, enumerated
 from grader.classroom.intake.class_files import digest_of_unread, open_class_submission
@@ -34,11 +35,11 @@ _MAX_CAUSE = 200  # characters
 class ClassContext(NamedTuple):
     """What all tasks of a run share."""
 
-    roots: tuple[str, ...]  # the class folders or zips
+    roots: Strings  # the class folders or zips
     rubric: bytes  # the content of its file
     rubric_path: str
     max_size: int = URDF_LIMIT  # of a URDF, in bytes
-    parts: tuple[str, ...] = ()  # the ids of those to grade; without any all
+    parts: Strings = ()  # the ids of those to grade; without any all
     arguments: Mapping[str, str] = {}  # of xacro
     timeout: float = inf  # for a submission, in seconds of processor time
 
@@ -48,8 +49,8 @@ class Task(NamedTuple):
 
     key: str  # of the student
     root: int  # the index of the class folder
-    paths: tuple[str, ...]  # below it
-    names: tuple[str, ...] = ()  # the student's own of several files
+    paths: Strings  # below it
+    names: Strings = ()  # the student's own of several files
     graded: str = ""  # the digest, if it has a result that is current
     has_timed_out: bool = False  # whether that result is that it took too long
     no_documents: str = ""  # why its documents are not read: its grading was lost with them
@@ -92,7 +93,8 @@ def _grade_within_limits(context: ClassContext, task: Task) -> StoredResult:
 
 
 def _grade_one(context: ClassContext, task: Task) -> StoredResult:
-    rubric, root = _rubric_from(context.rubric, context.rubric_path), context.roots[task.root]
+    rubric = _rubric_from(context.rubric, context.rubric_path)
+    root = context.roots[task.root]
     result = StoredResult(task.key, 0, "unchanged", no_documents=task.no_documents)
     try:
         opened = open_class_submission(root, task.paths, task.names, task.key, context.max_size)
@@ -158,7 +160,8 @@ def _key_answers(report: Report, digest: str) -> tuple[dict[str, str], dict[str,
 
     It is that of the words, or of the whole submission where more than words is to be looked at.
     """
-    automatic, written = dict[str, str](), dict[str, str]()
+    automatic = {}
+    written = {}
     for one in report.results:
         if one.outcome.status != "pending":
             continue
@@ -182,7 +185,7 @@ def given_up(context: ClassContext, task: Task, error: WorkerError, digest: str)
     return _undecided(context, result)
 
 
-def unopened_digest(root: str, paths: tuple[str, ...]) -> str:
+def unopened_digest(root: str, paths: Strings) -> str:
     """Return the digest of files that are too slow to open; empty for folders."""
     unread = digest_of_unread(root, paths)
     return hash_values(unread) if unread else ""
@@ -197,16 +200,16 @@ def _undecided(context: ClassContext, result: StoredResult) -> StoredResult:
     return result._replace(parts=parts, results=results)
 
 
-def reference_hashes(data: bytes, path: str) -> tuple[str, ...]:
+def reference_hashes(data: bytes, path: str) -> Strings:
     """Return the hashes of the work in a rubric's reference.
 
     Raises InputError if nothing can be graded without it.
     """
     rubric = _rubric_from(data, path)
-    if rubric.solution is not None and rubric.compares_with_reference:
+    if rubric.solution and rubric.compares_with_reference:
         _ = rubric.solution.robot  # raises InputError
     with suppress(InputError):
-        if rubric.solution is not None:
+        if rubric.solution:
             return hash_handed_out(rubric.solution.submission, rubric)
     return ()
 
@@ -222,7 +225,8 @@ def _why_unreadable(submission: Submission) -> str:
         return submission.urdf.reason
     if not _has_nothing_to_grade(submission):
         return ""
-    tree, closed = submission.tree, submission.tree.unopened
+    tree = submission.tree
+    closed = submission.tree.unopened
     if closed:
         because = str(closed[0])
         more = f" (and {len(closed) - 1} more cannot be opened)" if len(closed) > 1 else ""
@@ -243,10 +247,10 @@ def _in_place_of_robot(report: Report) -> str:
 
     It is empty for another submission.
     """
-    subjects = {one.criterion.check.subject for one in report.results}
-    if subjects.isdisjoint(("urdf", "robot")) or not _has_nothing_to_grade(report.submission):
+    has_robot = any(one.criterion.check.is_of_robot for one in report.results)
+    if not has_robot or not _has_nothing_to_grade(report.submission):
         return ""
-    return enumerated([*report.submission.tree.files], MAX_NAMED) or "no file"
+    return enumerated(report.submission.tree.files, MAX_NAMED) or "no file"
 
 
 @lru_cache(maxsize=4)

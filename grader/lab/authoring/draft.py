@@ -16,6 +16,7 @@ from textwrap import shorten
 from typing import Any, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
+from grader.base.grouping import StringsByName
 from grader.base.text import capitalised, cut, printable
 from grader.base.toml_file import assignment, read_toml, toml_literal
 from grader.base.toml_types import WrongValue
@@ -36,12 +37,14 @@ from grader.lab.authoring.package_expectations import (
     value_expectations,
     words_of_launches,
 )
+from grader.lab.authoring.recording_expectations import recording_expectations
 from grader.lab.checks.outcome import Outcome
 from grader.lab.checks.registry import find_check
 from grader.lab.grading.subjects import without_selectors
 from grader.lab.rubric.rubric import Rubric, read_rubric
 from grader.lab.submission.submission import Submission
 from grader.ros.known.releases import Release
+from grader.ros.recording.recording import Recording
 from grader.ros.urdf.shapes import UnknownShape
 from grader.workspace.api import has_programs
 
@@ -50,7 +53,8 @@ _WIDTH = 120  # columns
 
 # The arguments that all criteria of a check get, with their unit: room for rounding, but not for
 # mistakes.
-_METRES, _DEGREES = ({"tolerance": 0.002}, "metres"), ({"tolerance": 1.0}, "degrees")
+_METRES = ({"tolerance": 0.002}, "metres")
+_DEGREES = ({"tolerance": 1.0}, "degrees")
 _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
     **dict.fromkeys(("shows_box", "shows_cylinder", "shows_sphere"), _METRES),
     "shows_colour": ({"tolerance": 0.01}, "of a channel from 0 to 1"),
@@ -70,16 +74,32 @@ _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
         "random positions, besides the ends of each range",
     ),
 }
-_ROBOT, _PACKAGE = "robot", "package"
+_ROBOT = "robot"
+_PACKAGE = "package"
+_RECORDING = "recording"
+# The titles of the parts, and what they need.
+_PARTS = {
+    _ROBOT: ("The robot", "urdf"),
+    _PACKAGE: ("The packages", "package"),
+    _RECORDING: ("The recording", "files"),
+}
 _WHOLE = 100  # points
 _LEAST_OF_MEAN, _MOST_OF_MEAN = 0.5, 2  # of the mean points, for one criterion
 _USUAL_MEAN = 2  # points of a criterion, if no total is asked for
 _LEAST_MEAN = 1.5  # units of a criterion, in which weights can count
 _STEPS = tuple(map(Decimal, ("1", "0.5", "0.25", "0.1", "0.05", "0.01")))  # of points
 # The kinds of things that a solution has, which share the points evenly.
-_JOINTS, _SHAPES, _MASSES, _SIMULATION = "joints", "shapes", "masses", "simulation"
-_BUILDS, _LAUNCHES, _RVIZ, _NODES = "builds", "launch files", "RViz", "nodes"
-_NAMES, _PARAMETERS = "names", "parameters"
+_JOINTS = "joints"
+_SHAPES = "shapes"
+_MASSES = "masses"
+_SIMULATION = "simulation"
+_BUILDS = "builds"
+_LAUNCHES = "launch files"
+_RVIZ = "RViz"
+_NODES = "nodes"
+_NAMES = "names"
+_PARAMETERS = "parameters"
+_RECORDINGS = "recordings"
 _CHECKS_BY_KIND = {
     _SHAPES: "shows_box shows_cylinder shows_sphere shows_mesh shows_colour shows_nothing "
     "centre_at collides_as collision_matches_visual",
@@ -87,10 +107,13 @@ _CHECKS_BY_KIND = {
     _SIMULATION: "entry_is world_has",
     _BUILDS: "urdf_loads package_found package_type setup_imports build_installs installs_files "
     "without_problems",
-    _LAUNCHES: "node_runs launch_complete",
-    _NODES: "connects publishes_transform looks_up takes_parameters",
+    _LAUNCHES: "node_runs starts launch_complete",
+    _NODES: "connects publishes_transform looks_up takes_parameters interface_has publishes "
+    "serves_action uses_parameter",
     _RVIZ: "rviz_found rviz_fixed_frame rviz_shows_robot rviz_display_on",
     _PARAMETERS: "parameter_is",
+    _RECORDINGS: "recording_found recorded_topic drove wheels_agree recorded_frames_agree "
+    "recorded_tree",
 }
 _KIND_BY_CHECK = {
     check: kind for kind, checks in _CHECKS_BY_KIND.items() for check in checks.split()
@@ -132,6 +155,8 @@ _Subjects = Mapping[str, Any]  # what checks examine, by the names of their para
 
 # More than the largest robots have: criteria cost the square of their number.
 _MAX_EXPECTATIONS = 2000
+_Rows = Sequence[Expectation]  # criteria
+_Lines = Iterator[str]
 
 
 class Head(NamedTuple):
@@ -141,21 +166,9 @@ class Head(NamedTuple):
     title: str
     reference: str  # the path of the solution, relative to the rubric
     urdf: str  # its path in the package
-    packages: tuple[str, ...]  # their names
+    packages: Sequence[str]  # their names
     schema: str = ""  # the path of a JSON Schema for editors
     distro: Release | None = None  # of ROS 2, if the URDF needs a newer one than Jazzy
-
-
-class _DraftCriterion(NamedTuple):
-    """A criterion of a new rubric: what the reference passes, and what the check says."""
-
-    expectation: Expectation
-    title: str
-
-    @property
-    def is_of_package(self) -> bool:
-        """Whether the package is needed for it."""
-        return self.expectation.package is not None
 
 
 class RubricDraft(NamedTuple):
@@ -163,7 +176,7 @@ class RubricDraft(NamedTuple):
 
     data: bytes
     rubric: Rubric
-    omissions: tuple[Omission, ...]
+    omissions: Sequence[Omission]
 
 
 def draft(
@@ -172,99 +185,103 @@ def draft(
     head: Head,
     path: Path,
     choice: DraftChoice = _EVERYTHING,
+    recorded: tuple[Recording, str] | None = None,
 ) -> RubricDraft:
     """Return a rubric for a file at `path`, with a criterion for each expectation.
 
-    Other values of parameters are in it as comments. Without a robot it has no `solution`. Raises
-    InputError.
+    Other values are in it as comments. Without a robot it has no `solution`; `recorded` is a
+    recording with the name of criteria about it. Raises InputError.
     """
-    chosen, details = _chosen_expectations(submission, solution, choice)
+    chosen, details = _chosen_expectations(submission, solution, choice, recorded)
     subjects: dict[str, Any] = {"submission": submission}
-    if solution is not None:
+    if solution:
         subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
-    rows_by_expectation: dict[tuple[str, str | None, str], _DraftCriterion] = {}
-    omissions: list[Omission] = []
-    values: dict[str, list[_DraftCriterion]] = {}
+    rows_by_expectation = {}
+    omissions = []
+    values: dict[str, list[Expectation]] = {}
     for expectation in chosen:
         row = expectation if isinstance(expectation, Omission) else _tried(subjects, expectation)
         if isinstance(row, Omission):
             omissions.append(row)
-            if row.expectation is not None:
-                title = capitalised(row.expectation.title)
-                values.setdefault(_WHEN_CORRECTED, []).append(
-                    _DraftCriterion(row.expectation, title)
-                )
+            if row.expectation:
+                corrected = row.expectation._replace(title=capitalised(row.expectation.title))
+                values.setdefault(_WHEN_CORRECTED, []).append(corrected)
         else:
-            arguments = toml_literal([row.expectation.args, row.expectation.arguments])
-            rows_by_expectation[row.expectation.check, row.expectation.package, arguments] = row
-    rows = [*rows_by_expectation.values()]
+            arguments = toml_literal([row.args, row.arguments])
+            rows_by_expectation[row.check, row.package, arguments] = row
+    rows = list(rows_by_expectation.values())
     for detail in details:
         tried = _tried(subjects, detail)
-        if isinstance(tried, _DraftCriterion):
+        if isinstance(tried, Expectation):
             values.setdefault(detail.about, []).append(tried)
     if submission.packages and not choice.is_names_only:
-        values |= _values(subjects, submission, {row.expectation.words for row in rows})
+        values |= _values(subjects, submission, {row.words for row in rows})
     data = _rubric_text(head, rows, values, choice).encode()
     return RubricDraft(data, read_rubric(data, path), tuple(omissions))
 
 
 def _chosen_expectations(
-    submission: Submission, solution: Solution | None, choice: DraftChoice
+    submission: Submission,
+    solution: Solution | None,
+    choice: DraftChoice,
+    recorded: tuple[Recording, str] | None,
 ) -> tuple[list[Expectation | Omission], list[Expectation]]:
     """Return the expectations of a reference that are chosen, without the names that are free.
 
-    The details that a solution with programs leaves free are apart. Raises InputError for too many.
+    The details that a solution with programs leaves free, and those of a recording, are apart.
+    Raises InputError for too many.
     """
-    started = [*words_of_launches(submission)]
+    started = list(words_of_launches(submission))
     of_robot: Iterable[Expectation | Omission] = ()
     measured: Iterable[Expectation] = ()
-    if solution is not None:
+    if solution:
         of_robot = chain(robot_expectations(solution), element_expectations(solution, started))
         if has_programs(submission.workspace):
             of_robot = details_apart(iter(of_robot), solution.robot)
         measured = chain(measure_expectations(solution), naming_expectations(solution))
     of_packages = chain(package_expectations(submission), name_expectations(submission), measured)
+    of_recording = recording_expectations(*recorded, solution) if recorded is not None else ()
     chosen: list[Expectation | Omission] = []
-    robot = solution.robot if solution is not None else None
-    for expectation in islice(chain(of_robot, of_packages), _MAX_EXPECTATIONS + 1):
+    robot = solution.robot if solution else None
+    for expectation in islice(chain(of_robot, of_packages, of_recording), _MAX_EXPECTATIONS + 1):
         if isinstance(expectation, Omission):
             chosen.append(expectation)
-        elif choice.takes(expectation) and (freed := choice.freed(expectation, robot)) is not None:
+        elif choice.takes(expectation) and (freed := choice.freed(expectation, robot)):
             chosen.append(freed)
     if len(chosen) > _MAX_EXPECTATIONS:
         raise InputError(
             f"the reference has more than {_MAX_EXPECTATIONS} facts, which is too long for a "
             "rubric: name a smaller one"
         )
-    if not has_programs(submission.workspace):
-        return chosen, []
+    is_free = has_programs(submission.workspace)
     details = [
         expectation
         for expectation in chosen
-        if isinstance(expectation, Expectation) and expectation.is_detail
+        if isinstance(expectation, Expectation)
+        and expectation.is_detail
+        and (is_free or expectation.is_recorded)
     ]
     return [expectation for expectation in chosen if expectation not in details], details
 
 
 def _values(
     subjects: _Subjects, submission: Submission, known: Collection[str]
-) -> Mapping[str, list[_DraftCriterion]]:
+) -> Mapping[str, list[Expectation]]:
     """Return the values of parameters that the reference certainly gets, by the names of nodes."""
-    rows_by_subject: dict[str, list[_DraftCriterion]] = {}
+    rows_by_subject: dict[str, list[Expectation]] = {}
     expectations = (
         expectation
         for expectation in value_expectations(submission)
         if expectation.words not in known
     )
-    for row in (
-        _tried(subjects, expectation) for expectation in islice(expectations, _MAX_EXPECTATIONS)
-    ):
-        if isinstance(row, _DraftCriterion):
-            rows_by_subject.setdefault(row.expectation.about, []).append(row)
+    for expectation in islice(expectations, _MAX_EXPECTATIONS):
+        row = _tried(subjects, expectation)
+        if isinstance(row, Expectation):
+            rows_by_subject.setdefault(row.about, []).append(row)
     return rows_by_subject
 
 
-def _tried(subjects: _Subjects, expectation: Expectation) -> _DraftCriterion | Omission:
+def _tried(subjects: _Subjects, expectation: Expectation) -> Expectation | Omission:
     """Return the first of the expectations that the reference passes.
 
     If it passes none, return what it does not pass, and why.
@@ -280,9 +297,9 @@ def _tried(subjects: _Subjects, expectation: Expectation) -> _DraftCriterion | O
             reasons.append(f"an argument must be {error}")
             continue
         if outcome.status == "passed":
-            carried = tuple(carried for carried in one.carried if _holds(subjects, one, carried))
-            title = _cut_title(one.title or outcome.message)
-            return _DraftCriterion(one._replace(carried=carried), capitalised(title))
+            carried = [carried for carried in one.carried if _holds(subjects, one, carried)]
+            title = capitalised(_cut_title(one.title or outcome.message))
+            return one._replace(carried=carried, title=title)
         reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
     return Omission(expectation.words, reasons[0])
 
@@ -310,7 +327,7 @@ def _outcome(subjects: _Subjects, expectation: Expectation) -> Outcome:
     Raise WrongValue for an argument that it does not take.
     """
     check = find_check(expectation.check)
-    assert check is not None
+    assert check
     check = check.for_arguments(expectation.arguments)
     _, read = read_toml(f"it = {toml_literal(expectation.arguments)}".encode(), Path())
     given = {}
@@ -333,38 +350,39 @@ def _outcome(subjects: _Subjects, expectation: Expectation) -> Outcome:
 
 def _rubric_text(
     head: Head,
-    rows: Sequence[_DraftCriterion],
-    values: Mapping[str, Sequence[_DraftCriterion]],
+    rows: _Rows,
+    values: Mapping[str, _Rows],
     choice: DraftChoice,
 ) -> str:
     """Return a rubric with a criterion for each row; those with one heading follow each other."""
-    of_robot = [row for row in rows if not row.is_of_package]
-    of_package = [row for row in rows if row.is_of_package]
-    points = _points(of_robot, of_package, choice)
-    checks: set[str] = set()
+    criteria = sorted(rows, key=lambda row: list(_PARTS).index(_part(row)))
+    of_robot = [row for row in rows if _part(row) == _ROBOT]
+    points = _points(of_robot, criteria[len(of_robot) :], choice)
+    checks = set()
     for row in rows:
-        checks.add(row.expectation.check)
-        checks.update(carried.check for carried in row.expectation.carried)
-    part, usual = (_ROBOT if of_robot else _PACKAGE), Counter(points).most_common(1)[0][0]
+        checks.add(row.check)
+        checks.update(carried.check for carried in row.carried)
+    part = _part(criteria[0])
+    usual = Counter(points).most_common(1)[0][0]
     lines = [*_head_lines(head), *_default_lines(part, usual, checks)]
-    if any(row.expectation.carried for row in rows):
+    if any(row.carried for row in rows):
         lines += ["", "# carried: not deducted if only these criteria caused the failure"]
-    if of_robot:
-        lines += _part_lines(_ROBOT, "The robot", "urdf")
-    if of_package:
-        title = "The package" if len(head.packages) == 1 else "The packages"
-        lines += _part_lines(_PACKAGE, title, "package")
+    for name in dict.fromkeys(map(_part, criteria)):
+        title, needs = _PARTS[name]
+        if name == _PACKAGE and len(head.packages) == 1:
+            title = "The package"
+        lines += ["", "[[part]]", assignment("id", name), assignment("title", title)]
+        lines.append(assignment("needs", needs))
     shown = {node: criteria_of_node[:_MAX_VALUES] for node, criteria_of_node in values.items()}
-    named = _with_ids([*of_robot, *of_package, *chain.from_iterable(shown.values())])
-    ids = {row.expectation.words: name for name, row in named.items()}
+    named = _with_ids([*criteria, *chain.from_iterable(shown.values())])
+    ids = {row.words: name for name, row in named.items()}
     # A criterion refers to no value, which is only a comment.
-    of_criteria = {
-        row.expectation.words: ids[row.expectation.words] for row in [*of_robot, *of_package]
-    }
-    layout, about = _Layout(part, usual, of_criteria), ""
+    of_criteria = {row.words: ids[row.words] for row in criteria}
+    layout = _Layout(part, usual, of_criteria)
+    about = ""
     for (name, row), worth in zip(named.items(), points, strict=False):
-        if row.expectation.about != about:
-            about = row.expectation.about
+        if row.about != about:
+            about = row.about
             lines += ["", f"# --- {printable(about)} ".ljust(_WIDTH, "-")]
         lines += layout.criterion(name, row, worth)
     if shown:
@@ -373,8 +391,8 @@ def _rubric_text(
 
 
 def _points(
-    of_robot: Sequence[_DraftCriterion],
-    of_package: Sequence[_DraftCriterion],
+    of_robot: _Rows,
+    of_package: _Rows,
     choice: DraftChoice,
 ) -> list[Decimal]:
     """Return the points of criteria, first of those of the robot.
@@ -387,28 +405,35 @@ def _points(
     weights = [_weight(row, choice) for row in rows]
     is_of_one_kind = choice.has_equal_weights or not of_package
     if is_of_one_kind and choice.total is None:
-        return [*map(Decimal, weights)]
+        return list(map(Decimal, weights))
     kinds = [_ROBOT if is_of_one_kind else _choose_share(row) for row in rows]
     return _shared(kinds, weights, choice.total)
 
 
-def _choose_share(row: _DraftCriterion) -> str:
+def _part(row: Expectation) -> str:
+    """Return the part of the rubric that has what is needed for a criterion."""
+    if row.is_recorded:
+        return _RECORDING
+    return _ROBOT if row.package is None else _PACKAGE
+
+
+def _choose_share(row: Expectation) -> str:
     """Return the kind of thing that a criterion is about, which has its share of the points."""
-    if row.expectation.check == "names_agree":
-        return _NODES if row.expectation.arguments["of"] in _OF_NODES else _NAMES
-    if row.expectation.check == "node_runs" and not _OF_CODE.isdisjoint(row.expectation.arguments):
+    if row.check == "names_agree":
+        return _NODES if row.arguments["of"] in _OF_NODES else _NAMES
+    if row.check == "node_runs" and not _OF_CODE.isdisjoint(row.arguments):
         return _NODES
-    return _KIND_BY_CHECK.get(row.expectation.check, _JOINTS)
+    return _KIND_BY_CHECK.get(row.check, _JOINTS)
 
 
-def _weight(row: _DraftCriterion, choice: DraftChoice) -> int:
+def _weight(row: Expectation, choice: DraftChoice) -> int:
     """Return how much a criterion counts beside others."""
-    is_effort = row.expectation.check == "joint_limits" and "lower" not in row.expectation.arguments
+    is_effort = row.check == "joint_limits" and "lower" not in row.arguments
     if choice.has_equal_weights or is_effort:
         return 1
-    if row.expectation.check in _HEAVY:
+    if row.check in _HEAVY:
         return 3
-    return 1 if row.expectation.check in _LIGHT else 2
+    return 1 if row.check in _LIGHT else 2
 
 
 def _shared(kinds: Sequence[str], weights: Sequence[int], total: int | None) -> list[Decimal]:
@@ -432,7 +457,7 @@ def _shared(kinds: Sequence[str], weights: Sequence[int], total: int | None) -> 
     units = int(total / unit)
     least = _LEAST_OF_MEAN * units / count
     counts = Counter(kinds)
-    shares = _even_shares(units, [*counts.values()])
+    shares = _even_shares(units, list(counts.values()))
     exact = [0.0] * count
     for kind, share in zip(counts, shares, strict=True):
         places = [place for place, name in enumerate(kinds) if name == kind]
@@ -477,9 +502,7 @@ def _apportioned(points: int, weights: Sequence[float]) -> list[int]:
     return shares
 
 
-def _value_lines(
-    layout: "_Layout", values: Mapping[str, Sequence[_DraftCriterion]]
-) -> Iterator[str]:
+def _value_lines(layout: "_Layout", values: Mapping[str, _Rows]) -> _Lines:
     """Yield comments with criteria for values of parameters, and how many more there are."""
     yield from (
         "",
@@ -489,24 +512,20 @@ def _value_lines(
     )
     for node, rows in values.items():
         for row in rows[:_MAX_VALUES]:
-            plain = row._replace(expectation=row.expectation._replace(about=""))
-            lines = layout.criterion(
-                layout.ids[row.expectation.words], plain, Decimal(0), _MAX_COMMENT
-            )
+            plain = row._replace(about="")
+            lines = layout.criterion(layout.ids[row.words], plain, Decimal(0), _MAX_COMMENT)
             for line in lines:
                 yield f"# {line}" if line else ""
         if len(rows) > _MAX_VALUES:
             yield from ("", f"# # {len(rows) - _MAX_VALUES} more of {printable(node)}")
 
 
-def _with_ids(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
+def _with_ids(rows: _Rows) -> dict[str, Expectation]:
     """Return the rows by ids of what they are about and their checks, such as upper-arm-mass-is."""
-    rows_by_name: dict[str, _DraftCriterion] = {}
+    rows_by_name = {}
     numbers: dict[str, int] = {}  # the last that each name got
     for row in rows:
-        name = words = (
-            re.sub(r"[\W_]+", "-", row.expectation.words.lower()).strip("-")[:_MAX_ID].strip("-")
-        )
+        name = words = re.sub(r"[\W_]+", "-", row.words.lower()).strip("-")[:_MAX_ID].strip("-")
         while name in rows_by_name:
             numbers[words] = numbers.get(words, 1) + 1
             name = f"{words}-{numbers[words]}"
@@ -514,7 +533,7 @@ def _with_ids(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
     return rows_by_name
 
 
-def _head_lines(head: Head) -> Iterator[str]:
+def _head_lines(head: Head) -> _Lines:
     if head.schema:
         yield f"#:schema {head.schema}"
     yield assignment("id", head.id)
@@ -533,7 +552,7 @@ def _head_lines(head: Head) -> Iterator[str]:
         yield f"{assignment('distro', head.distro)}  # the release of ROS 2, which reads the URDF"
 
 
-def _default_lines(part: str, points: Decimal, checks: set[str]) -> Iterator[str]:
+def _default_lines(part: str, points: Decimal, checks: set[str]) -> _Lines:
     yield from ("", "[defaults]", assignment("part", part), assignment("points", points))
     usual = {name: given for name, given in _USUAL.items() if name in checks}
     if usual:
@@ -543,90 +562,77 @@ def _default_lines(part: str, points: Decimal, checks: set[str]) -> Iterator[str
     )
 
 
-def _part_lines(name: str, title: str, needs: str) -> Iterator[str]:
-    yield from ("", "[[part]]", assignment("id", name), assignment("title", title))
-    yield assignment("needs", needs)
-
-
 class _Layout(NamedTuple):
     """How criteria are written: what they need not say, and the ids of others by their words."""
 
     part: str
     points: Decimal
-    ids: Mapping[str, str]
+    ids: StringsByName
 
     def criterion(
-        self, name: str, row: _DraftCriterion, points: Decimal, width: int = _WIDTH
-    ) -> Iterator[str]:
+        self, name: str, row: Expectation, points: Decimal, width: int = _WIDTH
+    ) -> _Lines:
         """Yield the lines of a criterion."""
-        expectation = row.expectation
         yield ""
-        if expectation.check == "frame_at" and "rpy" in expectation.arguments:
+        if row.check == "frame_at" and "rpy" in row.arguments:
             yield (
                 "# The frame itself has to be rotated, as in the solution, and not only its shapes."
             )
             yield "# If any orientation is correct, replace rpy by angle = 180."
         yield from ("[[criterion]]", assignment("id", name))
-        if row.is_of_package and self.part == _ROBOT:
-            yield assignment("part", _PACKAGE)
-        if expectation.package:
-            yield assignment("package", expectation.package)
-        if expectation.about:
-            yield assignment("about", printable(expectation.about))
+        if _part(row) != self.part:
+            yield assignment("part", _part(row))
+        if row.package:
+            yield assignment("package", row.package)
+        if row.about:
+            yield assignment("about", printable(row.about))
         if points != self.points:
             yield assignment("points", points)
         yield assignment("title", printable(row.title))
-        yield f"check = {toml_literal(expectation.check)}"
-        if expectation.args:
-            yield assignment("args", expectation.args)
-        tables = [*self._carried(expectation)]
+        yield f"check = {toml_literal(row.check)}"
+        if row.args:
+            yield assignment("args", row.args)
+        tables = list(self._carried(row))
         is_line = len(tables) == 1 and len(assignment("carried", tables[0])) <= width
         if is_line:
             yield assignment("carried", tables[0])
-        yield from _with_lines("criterion", expectation.arguments, width)
+        yield from _with_lines("criterion", row.arguments, width)
         for table in () if is_line else tables:
             yield from ("", "[[criterion.carried]]", *_toml_lines("from", table["from"]))
-            yield from (
-                assignment("check", table["check"]),
-                *_with_lines("criterion.carried", table["with"]),
-            )
+            yield assignment("check", table["check"])
+            yield from _with_lines("criterion.carried", table["with"])
 
     def _carried(self, expectation: Expectation) -> Iterator[Mapping[str, Any]]:
         """Yield what counts instead of an expectation, and after which mistakes.
 
         It yields nothing if no criteria are about these.
         """
-        for carried_expectation in expectation.carried:
-            causes = [
-                self.ids[words]
-                for words in dict.fromkeys(carried_expectation.causes)
-                if words in self.ids
-            ]
+        for one in expectation.carried:
+            causes = [self.ids[words] for words in dict.fromkeys(one.causes) if words in self.ids]
             if causes:
-                yield {
-                    "from": causes,
-                    "check": carried_expectation.check,
-                    "with": carried_expectation.arguments,
-                }
+                yield {"from": causes, "check": one.check, "with": one.arguments}
 
 
-def _with_lines(table: str, arguments: Mapping[str, Any], width: int = _WIDTH) -> Iterator[str]:
+def _with_lines(table: str, arguments: Mapping[str, Any], width: int = _WIDTH) -> _Lines:
     """Yield the arguments of a check in one line, or in a table below the others."""
     if len(assignment("with", arguments)) <= width:
         if arguments:
             yield assignment("with", arguments)
         return
     yield from ("", f"[{table}.with]")
-    for key, value in sorted(arguments.items(), key=lambda item: isinstance(item[1], Mapping)):
-        if not isinstance(value, Mapping) or len(assignment(key, value)) <= _WIDTH:
+    tables = {}
+    for key, value in arguments.items():
+        if isinstance(value, Mapping) and len(assignment(key, value)) > _WIDTH:
+            tables[key] = value
+        else:
             yield from _toml_lines(key, value)
-            continue
+    for key, value in tables.items():
         yield from ("", f"[{table}.with.{key}]")
         for inner, item in value.items():
             yield from _toml_lines(inner, item)
 
 
-def _toml_lines(key: str, value: Any) -> Iterator[str]:
+def _toml_lines(key: str, value: Any) -> _Lines:
     """Yield a line that sets a key, or, of a list that is too long for one, lines of items."""
     line = assignment(key, value)
     if len(line) <= _WIDTH or not isinstance(value, list):

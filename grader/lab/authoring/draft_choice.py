@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.grouping import StringsByName
+from grader.base.names import last_part
 from grader.base.text import texts_in
 from grader.lab.authoring.expectations import Expectation, Omission
 from grader.lab.checks.check import LINK_ARGUMENTS
@@ -14,7 +16,7 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.workspace.rules.rule_table import FAMILIES
 
 # What --without takes besides the families of names: words for the checks of a draft.
-_KINDS: Mapping[str, tuple[str, ...]] = {
+_KINDS = {
     "shapes": ("shows_box", "shows_cylinder", "shows_sphere", "shows_mesh", "centre_at"),
     "colours": ("shows_colour",),
     "masses": ("mass_is",),
@@ -28,7 +30,12 @@ _KINDS: Mapping[str, tuple[str, ...]] = {
     "rviz": ("rviz_found", "rviz_fixed_frame", "rviz_shows_robot", "rviz_display_on"),
     "nodes": (
         "node_runs",
+        "starts",
         "looks_up",
+        "interface_has",
+        "publishes",
+        "serves_action",
+        "uses_parameter",
         "takes_parameters",
         "connects",
         "publishes_transform",
@@ -41,12 +48,15 @@ WITHOUT = (*_KINDS, *FAMILIES)
 # Without these, names cannot be compared.
 _OF_NAMES = ("urdf_loads", "package_found", "setup_imports", "launch_complete", "names_agree")
 # Checks of what has a name, with the arguments; launch files may have any name anyway.
-_NAMED_BY: Mapping[str, tuple[str, ...]] = {
+_NAMED_BY = {
     "package_found": ("name",),
     "parameter_is": ("node",),
     "connects": ("from", "to"),
     "publishes_transform": ("parent", "child"),
     "looks_up": ("target", "source"),
+    "publishes": ("topic",),
+    "serves_action": ("action",),
+    "uses_parameter": ("node",),
 }
 _MAX_MOVED = 20  # links that @moved:1 to @moved:20 name
 _OPENED = ("publishes", "subscribes", "serves", "calls")
@@ -90,29 +100,29 @@ class DraftChoice(NamedTuple):
         names = _NAMED_BY.get(expectation.check, ())
         if any(self._is_free(expectation.arguments.get(name)) for name in names):
             return None
-        selectors: dict[str, str] = {}
+        selectors = {}
         for link in self._free_links(expectation, robot):
-            selector = _select_link(robot, link) if robot is not None else None
+            selector = _select_link(robot, link) if robot else None
             if selector is None:
                 return Omission(
                     expectation.words, f"no place in the tree names the free link {link}"
                 )
             selectors[link] = selector
         placed = self._without_names(_with_selectors(expectation, selectors))
-        if placed is None:
+        if not placed:
             return None
         carried = [
             one._replace(arguments=_by_selectors(one.arguments, selectors))
             for one in expectation.carried
         ]
         others = [_with_selectors(one, selectors) for one in expectation.otherwise]
-        return placed._replace(carried=tuple(carried), otherwise=tuple(others))
+        return placed._replace(carried=carried, otherwise=others)
 
     def _free_links(self, expectation: Expectation, robot: Configuration | None) -> set[str]:
         """Return the free links that an expectation, or what counts instead, names."""
-        if robot is None:
+        if not robot:
             return set()
-        named: set[str] = set()
+        named = set()
         for arguments in (expectation.arguments, *(one.arguments for one in expectation.carried)):
             given = [value for key, value in arguments.items() if key in LINK_ARGUMENTS]
             named |= {name for name in texts_in(given) if robot.robot.has_link(name)}
@@ -120,7 +130,8 @@ class DraftChoice(NamedTuple):
 
     def _without_names(self, expectation: Expectation) -> Expectation | None:
         """Return an expectation without free names as values; None if it asks for nothing else."""
-        arguments, title = dict(expectation.arguments), expectation.title
+        arguments = dict(expectation.arguments)
+        title = expectation.title
         for name in sorted(self.free) if "at" in arguments else ():
             title = title.replace(f" of {name!r}", "")
             for key in ("@name", "@reference", "joint/@name"):
@@ -153,10 +164,10 @@ class DraftChoice(NamedTuple):
         It also is if it ends in one, as the path of a file or the name of a topic does.
         """
         if isinstance(value, list):
-            return any(self._is_free(item) for item in value)
+            return any(map(self._is_free, value))
         if not isinstance(value, str):
             return False
-        return value in self.free or value.rpartition("/")[2] in self.free
+        return value in self.free or last_part(value) in self.free
 
 
 def _select_link(robot: Configuration, link: str) -> str | None:
@@ -170,7 +181,7 @@ def _select_link(robot: Configuration, link: str) -> str | None:
     return None
 
 
-def _with_selectors(expectation: Expectation, selectors: Mapping[str, str]) -> Expectation:
+def _with_selectors(expectation: Expectation, selectors: StringsByName) -> Expectation:
     """Return an expectation with places in the tree for the names of links."""
     title = expectation.title
     for link, selector in selectors.items():
@@ -180,7 +191,7 @@ def _with_selectors(expectation: Expectation, selectors: Mapping[str, str]) -> E
     )
 
 
-def _by_selectors(arguments: Mapping[str, Any], selectors: Mapping[str, str]) -> Mapping[str, Any]:
+def _by_selectors(arguments: Mapping[str, Any], selectors: StringsByName) -> Mapping[str, Any]:
     """Return arguments with places in the tree for the names of links."""
     placed = dict(arguments)
     for key in LINK_ARGUMENTS:

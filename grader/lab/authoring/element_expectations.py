@@ -2,10 +2,12 @@
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from math import isfinite
 from typing import Any
 
+from grader.base.grouping import StringsByName, as_list
+from grader.base.patterns import on_use
 from grader.base.text import enumerated
 from grader.lab.authoring.expectations import (
     CarriedExpectation,
@@ -14,6 +16,7 @@ from grader.lab.authoring.expectations import (
     Omission,
     Solution,
     are_joints_free,
+    longest_title,
 )
 from grader.ros.installation.places import is_of_one_machine
 from grader.ros.package.robot_file import Read, read_as_ros
@@ -34,31 +37,30 @@ from grader.workspace.rules.controllers import needed_interfaces
 from grader.workspace.rules.reading import read_agreement
 
 _MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
-_NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?")
-_CONDITION = re.compile(r"\[[^\[\]=@]*@[^=@\[\]]+='([^']*)'\]")
-_REFERENCE = re.compile(r"\[(@reference|joint/@name)='([^']*)'\]")
-_JOINT_KEY = re.compile(r"(?:^|[/_])joints?$|joint_names?$|(?:^|/)joint/@name$")
+_NUMBER = on_use(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?")
+_CONDITION = on_use(r"\[[^\[\]=@]*@[^=@\[\]]+='([^']*)'\]")
+_REFERENCE = on_use(r"\[(@reference|joint/@name)='([^']*)'\]")
+_JOINT_KEY = on_use(r"(?:^|[/_])joints?$|joint_names?$|(?:^|/)joint/@name$")
 _TRUTH = {"true": True, "false": False}
-_FILE = re.compile(r"/[\w.-]+\.(ya?ml|xml|xacro|urdf|sdf|srdf|world|rviz|config)$")
+_FILE = on_use(r"/[\w.-]+\.(ya?ml|xml|xacro|urdf|sdf|srdf|world|rviz|config)$")
 _SMALL = 0.05  # below it, the usual tolerance of numbers is too large
 _SHARE = 0.01  # of a small number: its tolerance
 _MAX_TITLE = 100  # characters
-_SUBJECTS = ("@reference", "@name", "joint/@name")
 _INTERFACE = "command_interface/@name"
-_NAMED_BY = ("reference", "name", "filename", "type")
 _NAMED_FREELY = ("ros2_control", "transmission")
 _OF_ARGUMENTS = ("urdf_loads", "files names_agree", "arguments names_agree")
 # The paths of values that are details: see `Expectation.is_detail`.
-_DETAIL = re.compile(
+_DETAIL = on_use(
     r"\A(gazebo/sensor/(.*/)?(@name|\w*frame_id|always_on|visualize|format|horizontal_fov"
     r"|(noise|clip)(/.*)?)"
     r"|ros2_control/joint/\w+/param(/.*)?"
     r"|gazebo/(?!sensor|plugin).*)"
 )
 # Likewise of a joint that mimics another one.
-_DETAIL_OF_MIMIC = re.compile(r"ros2_control/joint/state_interface(/.*)?")
-_CONDITIONS = re.compile(r"\[[^\[\]]*\]")
+_DETAIL_OF_MIMIC = on_use(r"ros2_control/joint/state_interface(/.*)?")
+_CONDITIONS = on_use(r"\[[^\[\]]*\]")
 _Values = dict[str, Any]
+_Arguments = Mapping[str, Any]  # of entry_is
 
 
 def element_expectations(solution: Solution, causes: Collection[str]) -> Expectations:
@@ -72,7 +74,7 @@ def element_expectations(solution: Solution, causes: Collection[str]) -> Expecta
     robot = solution.robot.robot
     joints = {joint.name for joint in robot.joints}
     links = {link.name for link in robot.links}
-    selectors: dict[str, str] = {}
+    selectors = {}
     for joint in robot.joints if are_joints_free(solution) else ():
         if joint.name not in links and "'" not in joint.child:
             selectors[joint.name] = f"{JOINT_OF}{joint.child}"
@@ -90,14 +92,16 @@ def element_expectations(solution: Solution, causes: Collection[str]) -> Expecta
         return entry._replace(title=_title(entry))
 
     without_launch = _root_without_launch_files(solution)
-    without = None if without_launch is None else [*map(asked, _entries(without_launch, covered))]
+    without = (
+        None if without_launch is None else list(map(asked, _entries(without_launch, covered)))
+    )
     met: Counter[str] = Counter()
     for entry in map(asked, _entries(solution.root, covered)):
         if isinstance(entry, Omission):
             yield entry
             continue
         met[entry.words] += 1
-        carried = [*_carried_from_names(entry, joints, links)]
+        carried = list(_carried_from_names(entry, joints, links))
         if without is not None:
             others = [
                 one.arguments
@@ -106,14 +110,14 @@ def element_expectations(solution: Solution, causes: Collection[str]) -> Expecta
             ]
             other = others[met[entry.words] - 1] if len(others) >= met[entry.words] else None
             carried += _carried_from_launch(entry, other, (*_OF_ARGUMENTS, *causes))
-        yield entry._replace(carried=tuple(carried))
+        yield entry._replace(carried=carried)
 
 
 def details_apart(expectations: Expectations, robot: Configuration) -> Expectations:
     """Yield expectations, of those about an element first all but its details, then these."""
     mimics: set[str] = set()
     for joint in robot.robot.joints:
-        if joint.mimic is not None:
+        if joint.mimic:
             mimics.update((joint.name, f"{JOINT_OF}{joint.child}"))
     for expectation in expectations:
         if isinstance(expectation, Expectation) and expectation.check == "entry_is":
@@ -136,11 +140,10 @@ def _with_details_apart(expectation: Expectation, mimics: Collection[str]) -> It
         carried = []
         for one in expectation.carried:
             if "at" in one.arguments:
-                weaker = _without_details(one.arguments, details)
-                carried.append(one._replace(arguments=weaker))
+                carried.append(one._replace(arguments=_without_details(one.arguments, details)))
             else:
                 carried.append(one)
-        main = expectation._replace(arguments=kept, carried=tuple(carried))
+        main = expectation._replace(arguments=kept, carried=carried)
         yield main._replace(title=_title(main))
     rest = {}
     for key, value in values.items():
@@ -154,28 +157,30 @@ def _with_details_apart(expectation: Expectation, mimics: Collection[str]) -> It
     yield apart._replace(title=_title(apart), is_detail=True)
 
 
-def _without_details(
-    arguments: Mapping[str, Any], details: Collection[re.Pattern[str]]
-) -> Mapping[str, Any]:
+def _without_details(arguments: _Arguments, details: Collection[re.Pattern[str]]) -> _Arguments:
     """Return the arguments of entry_is without the values that are details."""
     path = _CONDITIONS.sub("", arguments["at"])
+    kept = _with_values(
+        arguments,
+        lambda key, _: not any(detail.fullmatch(f"{path}/{key}") for detail in details),
+    )
+    is_whole = len(kept.get("values", {})) == len(arguments.get("values", {}))
+    return arguments if is_whole else kept
+
+
+def _with_values(arguments: _Arguments, is_kept: Callable[[str, Any], bool]) -> _Arguments:
+    """Return the arguments of entry_is with those of its values, by their paths, that are kept."""
     values = {}
-    for key, value in arguments.get("values", {}).items():
-        if not any(detail.fullmatch(f"{path}/{key}") for detail in details):
-            values[key] = value
-    if len(values) == len(arguments.get("values", {})):
-        return arguments
+    for path, value in arguments.get("values", {}).items():
+        if is_kept(path, value):
+            values[path] = value
     return _entry(arguments["at"], values)
 
 
 def _without_topics(expectation: Expectation) -> Expectation:
     """Return an expectation without the names of topics, which need only agree."""
-    values = {
-        path: value
-        for path, value in expectation.arguments.get("values", {}).items()
-        if not path.endswith("topic")
-    }
-    return expectation._replace(arguments=_entry(expectation.arguments["at"], values))
+    arguments = _with_values(expectation.arguments, lambda path, _: not path.endswith("topic"))
+    return expectation._replace(arguments=arguments)
 
 
 def _without_files(expectation: Expectation) -> Expectation:
@@ -183,21 +188,22 @@ def _without_files(expectation: Expectation) -> Expectation:
 
     A build has to install them.
     """
-    values = {
-        path: value
-        for path, value in expectation.arguments.get("values", {}).items()
-        if not (isinstance(value, str) and _FILE.search(value))
-    }
-    return expectation._replace(arguments=_entry(expectation.arguments["at"], values))
+    arguments = _with_values(
+        expectation.arguments,
+        lambda _, value: not (isinstance(value, str) and _FILE.search(value)),
+    )
+    return expectation._replace(arguments=arguments)
 
 
-def _by_links(expectation: Expectation, selectors: Mapping[str, str]) -> Expectation:
+def _by_links(expectation: Expectation, selectors: StringsByName) -> Expectation:
     """Return an expectation with joints named by the links that they hold.
 
     `selectors` has these by the names of joints.
     """
-    at, values = expectation.arguments["at"], expectation.arguments.get("values", {})
-    is_joint, is_of_system = at.endswith("/joint"), at.startswith("ros2_control")
+    at = expectation.arguments["at"]
+    values = expectation.arguments.get("values", {})
+    is_joint = at.endswith("/joint")
+    is_of_system = at.startswith("ros2_control")
     at = _REFERENCE.sub(
         lambda reference: f"[{reference[1]}='{selectors.get(reference[2], reference[2])}']", at
     )
@@ -230,16 +236,17 @@ def _root_without_launch_files(solution: Solution) -> Element | None:
 
     It is None where there is no robot.
     """
-    urdf, submission = solution.submission.urdf, solution.submission
+    urdf = solution.submission.urdf
+    submission = solution.submission
     if not isinstance(urdf, Read) or not urdf.is_expanded:
         return None
     around = submission.surroundings(Budget())._replace(graded=None)
     reading = read_as_ros(urdf.data, urdf.path, around).reading
-    return None if reading.robot is None else reading.root
+    return None if not reading.robot else reading.root
 
 
 def _carried_from_launch(
-    expectation: Expectation, other: Mapping[str, Any] | None, causes: tuple[str, ...]
+    expectation: Expectation, other: _Arguments | None, causes: Sequence[str]
 ) -> list[CarriedExpectation]:
     """Return what counts instead of an expectation if launch files give xacro no arguments.
 
@@ -249,44 +256,33 @@ def _carried_from_launch(
         return []
     if other is None:
         return [CarriedExpectation(causes, "urdf_loads")]
-    values, others = expectation.arguments.get("values", {}), other.get("values", {})
-    same = {key: value for key, value in values.items() if others.get(key) == value}
-    return [
-        CarriedExpectation(causes, expectation.check, _entry(expectation.arguments["at"], same))
-    ]
+    others = other.get("values", {})
+    same = _with_values(expectation.arguments, lambda key, value: others.get(key) == value)
+    return [CarriedExpectation(causes, expectation.check, same)]
 
 
-def _weakened(arguments: Mapping[str, Any], names: Collection[str]) -> Mapping[str, Any]:
+def _weakened(arguments: _Arguments, names: Collection[str]) -> _Arguments:
     """Return the arguments without conditions and values that are names of joints and links."""
     at = _CONDITION.sub(
         lambda condition: "" if condition[1] in names else condition[0], arguments["at"]
     )
-    return _entry(
-        at,
-        {
-            key: expected
-            for key, expected in arguments.get("values", {}).items()
-            if not _names_any(expected, names)
-        },
+    return _with_values(
+        {**arguments, "at": at}, lambda _, expected: not _names_any(expected, names)
     )
 
 
 def _names_any(value: Any, names: Collection[str]) -> bool:
     """Return whether a value is a name, or a list with one."""
-    return any(
-        isinstance(word, str) and word in names
-        for word in (value if isinstance(value, list) else [value])
-    )
+    return any(isinstance(word, str) and word in names for word in as_list(value))
 
 
-def _entry(at: str, values: Mapping[str, Any]) -> Mapping[str, Any]:
+def _entry(at: str, values: _Arguments) -> _Arguments:
     """Return the arguments of entry_is, with a tolerance for numbers that are small."""
     if not values:
         return {"at": at}
     numbers = []
     for value in values.values():
-        items = value if isinstance(value, list) else [value]
-        numbers += [abs(item) for item in items if isinstance(item, float) and item]
+        numbers += [abs(item) for item in as_list(value) if isinstance(item, float) and item]
     least = min(numbers, default=_SMALL)
     if least < _SMALL:
         return {"at": at, "values": values, "tolerance": float(f"{least * _SHARE:.1g}")}
@@ -298,7 +294,9 @@ def _title(expectation: Expectation) -> str:
     steps = split_path(expectation.arguments["at"], is_xml=True)
     values = dict(expectation.arguments.get("values", {}))
     outer = f"<{steps[0].name}>"
-    subjects = [value for key, value in steps[0].conditions if key in _SUBJECTS]
+    subjects = [
+        value for key, value in steps[0].conditions if key in ("@reference", "@name", "joint/@name")
+    ]
     if subjects:
         outer += f" of {_subject_text(subjects[0])}"
     inner = f"<{steps[-1].name}>"
@@ -311,11 +309,7 @@ def _title(expectation: Expectation) -> str:
     start = f"in {outer}, {inner}" if len(steps) > 1 else outer
     if not details:
         return f"there is {inner} in {outer}" if len(steps) > 1 else f"there is {outer}"
-    for most in range(len(details), 0, -1):
-        title = f"{start} has {enumerated(details, most)}"
-        if len(title) <= _MAX_TITLE:
-            return title
-    return f"{start} is as in the reference"
+    return longest_title(f"{start} has", details, _MAX_TITLE, f"{start} is as in the reference")
 
 
 def _subject_text(name: str) -> str:
@@ -332,7 +326,7 @@ def _key_text(key: str) -> str:
 
 def _value_words(value: Any) -> str:
     if isinstance(value, list):
-        return enumerated([*map(_value_words, value)])
+        return enumerated(map(_value_words, value))
     text = xml_text(value)
     return _subject_text(text) if text.startswith(JOINT_OF) else text
 
@@ -367,10 +361,11 @@ def _conditions(element: Element) -> str:
     The names of <ros2_control> and <transmission> are free: a transmission is that of its joint.
     """
     tag = read_name(element)
-    given = [(key, value) for key, value in list_attributes(element)]
-    if tag in _NAMED_FREELY:
-        given = [(key, value) for key, value in given if key != "name"]
-    texts = [f"[@{key}='{value}']" for key, value in given]
+    texts = [
+        f"[@{key}='{value}']"
+        for key, value in list_attributes(element)
+        if key != "name" or tag not in _NAMED_FREELY
+    ]
     joints = element.findall("joint") if tag == "transmission" else []
     if len(joints) == 1 and joints[0].get("name"):
         texts.append(f"[joint/@name='{joints[0].get('name')}']")
@@ -387,8 +382,7 @@ def _drop_free(values: _Values, tag: str) -> None:
 
 def _drop_covered(values: _Values, covered: Collection[str]) -> None:
     """Remove the command interfaces of a joint if controllers need all of them."""
-    interface_value = values.get(_INTERFACE, [])
-    interfaces = interface_value if isinstance(interface_value, list) else [interface_value]
+    interfaces = as_list(values.get(_INTERFACE, []))
     if interfaces and all(
         f"{values.get('@name')}/{interface}" in covered for interface in interfaces
     ):
@@ -403,7 +397,7 @@ def _element_values(element: Element) -> Iterator[tuple[str, str, _Values]]:
     Each has a label, the path of the child, and values by their paths in it.
     """
     plain: _Values = {}
-    deep: list[Element] = []
+    deep = []
     for child in _children(element):
         if _children(child) or child.attrib:
             deep.append(child)
@@ -440,8 +434,7 @@ def _add(values: _Values, key: str, value: Any) -> None:
     if key not in values:
         values[key] = value
     else:
-        before = values[key] if isinstance(values[key], list) else [values[key]]
-        values[key] = before + (value if isinstance(value, list) else [value])
+        values[key] = as_list(values[key]) + as_list(value)
 
 
 def _value(text: str) -> str | bool | int | float:
@@ -466,5 +459,5 @@ def _children(element: Element) -> list[Element]:
 def _label(element: Element) -> str:
     """Return the tag and the name of an element, if that is not free."""
     tag = read_name(element)
-    keys = () if tag in _NAMED_FREELY else _NAMED_BY
+    keys = () if tag in _NAMED_FREELY else ("reference", "name", "filename", "type")
     return f"{tag} {next((str(element.get(key)) for key in keys if element.get(key)), '')}"

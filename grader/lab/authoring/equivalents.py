@@ -7,11 +7,12 @@ Each must keep full marks.
 
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import NamedTuple
 
 from lxml import etree
 
+from grader.base.patterns import on_use
 from grader.base.transforms import Transform, rotation_from_rpy, unit
 from grader.lab.authoring.trees import (
     XACRO,
@@ -34,9 +35,7 @@ from grader.ros.xml.urdf_format import PARTS
 
 _SORTED = ("link", "joint", "material", "visual", "collision")  # of these the order does not matter
 _COMMENTS = ("", " a robot ", ' <link name="ghost"/> ', "\n  0.6 / 4\n  ", " $ & % ")
-_NUMBER = re.compile(
-    r"(?<![\w.+-])-?(?:0|[1-9]\d*)(?:\.\d+)?(?![\w.])"
-)  # that xacro writes as it is
+_NUMBER = on_use(r"(?<![\w.+-])-?(?:0|[1-9]\d*)(?:\.\d+)?(?![\w.])")  # that xacro writes as it is
 _MAX_DIGITS = 12  # that survive the conversion to a float and back
 _MOVED = Transform(rotation_from_rpy((0.4, -0.7, 1.1)), (0.31, -0.17, 0.23))
 _SLIDE = 0.19  # metres
@@ -81,7 +80,7 @@ def equivalents(root: Element, rules: RewritingRules) -> Iterator[Equivalent]:
 def _reorder(tree: Element, _: RewritingRules) -> bool:
     """Reverse the order of elements: links, joints and materials, and those inside of each."""
     # A visual may use the material that another one defines before it.
-    free: tuple[str, ...] = _SORTED
+    free: Sequence[str] = _SORTED
     if tree.find("link/visual/material/*") is not None:
         free = ("joint", "material", "collision")
     for owner in [tree, *own_elements(tree, "link", "joint", "visual", "collision", "inertial")]:
@@ -112,7 +111,7 @@ def _move_frames(tree: Element, rules: RewritingRules) -> bool:
             change = _free_move(tree, joint, rules)
         else:
             change = None
-        if change is not None:
+        if change:
             move_frame(tree, link, change)
             moved = True
     return moved
@@ -126,13 +125,14 @@ def _free_move(tree: Element, joint: Element, rules: RewritingRules) -> Transfor
     @root, @tip and @moved:2 name links by structure, whose frames are those that move, and those at
     the ends.
     """
-    kind, child = joint.get("type"), end(joint, "child").get("link")
+    kind = joint.get("type")
+    child = end(joint, "child").get("link")
     is_tip = all(end(other, "parent").get("link") != child for other in tree.iterchildren("joint"))
     if rules.placed and (kind != "fixed" or is_tip):
         return None
     if kind in ("fixed", "prismatic"):
         return _MOVED
-    axis = unit(read_vector(joint.find("axis"), "xyz", "1 0 0"))
+    axis = unit(read_vector(joint.find("axis"), "1 0 0"))
     if kind not in ("revolute", "continuous") or axis is None:
         return None
     x, y, z = axis
@@ -184,14 +184,15 @@ def _turn_mimic_joints(tree: Element, rules: RewritingRules) -> bool:
     followed = {mimic.get("joint") for mimic in own_elements(tree, "mimic")}
     turned = False
     for joint in tree.iterchildren("joint"):
-        mimic, axis = joint.find("mimic"), joint.find("axis")
+        mimic = joint.find("mimic")
+        axis = joint.find("axis")
         name = joint.get("name", "")
         is_free = name not in rules.named and name not in followed
         if mimic is None or not is_free or joint.get("type") not in ("revolute", "prismatic"):
             continue
         if axis is None:
             axis = etree.SubElement(joint, "axis")
-        axis.set("xyz", attribute_text(-value for value in read_vector(axis, "xyz", "1 0 0")))
+        axis.set("xyz", attribute_text(-value for value in read_vector(axis, "1 0 0")))
         for key, default in (("multiplier", "1"), ("offset", "0")):
             mimic.set(key, attribute_text([-float(mimic.get(key, default))]))
         for limit in joint.iterchildren("limit"):
@@ -204,8 +205,8 @@ def _turn_mimic_joints(tree: Element, rules: RewritingRules) -> bool:
 
 def _change_layout(tree: Element, _: RewritingRules) -> bool:
     """Reverse the order of attributes, and add comments; `write_tree` changes the white space."""
-    for index, element in enumerate([*own_elements(tree, "*")]):
-        attributes = [*reversed(element.attrib.items())]
+    for index, element in enumerate(list(own_elements(tree, "*"))):
+        attributes = list(reversed(element.attrib.items()))
         element.attrib.clear()
         element.attrib.update(attributes)
         if index % 5 == 0:
@@ -273,7 +274,7 @@ _ALL = (
     _use_properties,
     _use_macro,
 )
-_REWRITINGS: dict[str, _Rewriting] = dict(zip(EQUIVALENTS, _ALL, strict=True))
+_REWRITINGS = dict(zip(EQUIVALENTS, _ALL, strict=True))
 
 
 def is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
@@ -290,9 +291,10 @@ def is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
 
 def _counting_form(urdf: Urdf, kept: Collection[str]) -> object:
     """Return what counts of a file; None if no robot is read."""
-    if not isinstance(urdf, Read) or urdf.reading.robot is None or urdf.reading.root is None:
+    if not isinstance(urdf, Read) or not urdf.reading.robot or urdf.reading.root is None:
         return None
-    robot, root = urdf.reading.robot, urdf.reading.root
+    robot = urdf.reading.robot
+    root = urdf.reading.root
     foreign = [
         etree.tostring(child, with_tail=False)
         for child in sorted(

@@ -4,26 +4,27 @@ Each must keep full marks.
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 
+from grader.base.grouping import StringsByName, known_values
 from grader.lab.submission.submission import Submission
 from grader.ros.config.yaml_nodes import YamlNode, yaml_value
 from grader.ros.config.yaml_values import sections_in
 from grader.workspace.model.workspace import Workspace
 
-EVERY_NODE, _FLOW_STYLE = "parameters of /**", "flow style of YAML"
+EVERY_NODE = "parameters of /**"
+_FLOW_STYLE = "flow style of YAML"
 
 
-def file_equivalents(submission: Submission) -> Iterator[tuple[str, Mapping[str, str]]]:
+def file_equivalents(submission: Submission) -> Iterator[tuple[str, StringsByName]]:
     """Yield each rewriting with the new texts of all files that it changes, by their paths."""
     workspace = submission.workspace
-    wide = {
-        path: _for_every_node(workspace, path, tree) for path, tree in workspace.installed.trees
-    }
-    flow = {path: _in_flow_style(tree) for path, tree in workspace.installed.trees}
+    trees = {tree.source.path: tree for tree in workspace.installed.trees}
+    wide = {path: _for_every_node(workspace, path, tree) for path, tree in trees.items()}
+    flow = {path: _in_flow_style(tree) for path, tree in trees.items()}
     for rewriting, texts in ((EVERY_NODE, wide), (_FLOW_STYLE, flow)):
-        changed = {path: text for path, text in texts.items() if text is not None}
+        changed = known_values(texts)
         if changed:
             yield rewriting, changed
 
@@ -33,10 +34,8 @@ def _for_every_node(workspace: Workspace, path: str, tree: YamlNode) -> str | No
 
     Only that node gets the file, and the file has only its parameters.
     """
-    sections, nodes = (
-        [keys for keys, _ in sections_in(tree)],
-        workspace.parameters.files.get(path, []),
-    )
+    sections = [keys for keys, _ in sections_in(tree)]
+    nodes = workspace.parameters.files.get(path, [])
     if (
         len(nodes) != 1
         or len(tree.value) != 1

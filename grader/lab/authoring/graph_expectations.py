@@ -6,6 +6,7 @@ from typing import Any
 from grader.base.errors import NotDecided
 from grader.base.quantities import point
 from grader.base.transforms import Vector
+from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.authoring.expectations import Expectation
 from grader.lab.submission.submission import Submission
 from grader.ros.launch.launch_model import Launch, StartedNode
@@ -39,18 +40,17 @@ class LaunchConnections:
     def expectations(self) -> Iterator[Expectation]:
         """Yield the transforms and the ways of messages that certainly are there."""
         for transform in list(self._published())[:_MAX_TRANSFORMS]:
-            parent, child = transform.parent, transform.child
+            parent = transform.parent
+            child = transform.child
             expectation = self._expectation(
                 "publishes_transform", child, parent=parent, child=child
             )
             expectation = expectation._replace(title=f"{child!r} is published below {parent!r}")
-            if transform.is_static and transform.pose is not None:
+            if transform.is_static and transform.pose:
                 xyz = _rounded(transform.pose.translation)
-                placed = {**expectation.arguments, "xyz": xyz, "rpy": _rounded(transform.pose.rpy)}
-                title = f"{child!r} is published at {point((*xyz,))} m in {parent!r}"
-                expectation = expectation._replace(
-                    arguments=placed, title=title, otherwise=(expectation,)
-                )
+                placed = expectation.with_arguments(xyz=xyz, rpy=_rounded(transform.pose.rpy))
+                title = f"{child!r} is published at {point(tuple(xyz))} m in {parent!r}"
+                expectation = placed._replace(title=title, otherwise=(expectation,))
             yield expectation
         ways = list(self._ways())[:_MAX_WAYS]
         for start, end in ways:
@@ -59,15 +59,19 @@ class LaunchConnections:
             )
             expectation = expectation._replace(title=f"messages find a way from {start} to {end}")
             if self._is_obeyed(end):
-                arguments = {**expectation.arguments, "read": True}
                 title = f"messages find a way from {start} to what reads {end}"
-                expectation = expectation._replace(arguments=arguments, title=title)
+                expectation = expectation.with_arguments(read=True)._replace(title=title)
             yield expectation
         arrived = {end for _, end in ways}
         for topic in [each for each in self._commands() if each not in arrived]:
             arguments = {"from": topic, "to": topic, "read": True}
             expectation = self._expectation("connects", topic, **arguments)
             yield expectation._replace(title=f"what is published on {topic} is read")
+
+    @property
+    def has_ends_of_robot(self) -> bool:
+        """Whether a robot opens topics, such as those of its sensors in Gazebo."""
+        return any(node.location.path.endswith(ROBOT_ENDINGS) for node in self._graph.graph.nodes)
 
     def needed(self, launch: Launch, nodes: Sequence[str], *, are_ends_asked: bool) -> list[str]:
         """Return the nodes that are needed for more than what other expectations ask for.
@@ -127,7 +131,7 @@ class LaunchConnections:
 
     def _commands(self) -> Iterator[str]:
         """Yield the topics of commands of own nodes that nodes of other packages obey."""
-        sent: list[GraphEnd] = []
+        sent = []
         for node in self._graph.graph.nodes:
             if self._is_own(node):
                 sent += [end for end in node.ends if end.type.startswith(_OF_COMMANDS)]
@@ -155,7 +159,8 @@ class LaunchConnections:
             end for node in nodes if self._is_own(node) for end in node.ends if not end.doubt
         ]
         others = [end for node in nodes if not self._is_own(node) for end in node.ends]
-        read, sent = _topics(own_ends, "subscription"), _topics(own_ends, "publisher")
+        read = _topics(own_ends, "subscription")
+        sent = _topics(own_ends, "publisher")
         read_by_others = _topics(others, "subscription")
         sent_by_others = _topics(others, "publisher")
         starts = [

@@ -3,13 +3,13 @@
 They are for the score of each, to draw a sample over all of them, and for why some may survive.
 """
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import chain, zip_longest
 from random import Random
 from typing import NamedTuple
 
+from grader.base.patterns import on_use
 from grader.lab.authoring.mutants import Mutant
 
 # The kinds, by how their mutations begin; the first that fits counts.
@@ -33,12 +33,13 @@ _KINDS = {
     "files": ("file",),
     "launch": ("action",),
     "RViz": ("display", "fixed frame"),
+    "recordings": ("record",),
     "elements": ("element", "attribute", "visual", "type"),
     "names": ("name", "definition", "text", "string", "parameter", "boolean"),
 }
 _OTHER = "others"
-_FREE_NAMES = re.compile(r"(?:^|/)(ros2_control|transmission|actuator) [^/]*name$")
-_FREE_OF_ROBOT = re.compile(r"transmission [^/]*/(actuator) [^/]*name$")  # not in <ros2_control>
+_FREE_NAMES = on_use(r"(?:^|/)(ros2_control|transmission|actuator) [^/]*name$")
+_FREE_OF_ROBOT = on_use(r"transmission [^/]*/(actuator) [^/]*name$")  # not in <ros2_control>
 
 
 class KindScore(NamedTuple):
@@ -67,15 +68,14 @@ def draw(mutants: Sequence[Mutant], most: int, seed: int) -> list[Mutant]:
     Each mutation has as many, as far as there are so many, and the seed draws them.
     """
     if len(mutants) <= most:
-        return [*mutants]
+        return list(mutants)
     mutations: dict[str, list[Mutant]] = {}
     for mutant in mutants:
         mutations.setdefault(mutant.mutation, []).append(mutant)
     random = Random(seed)
     shuffled = [random.sample(places, len(places)) for places in mutations.values()]
     in_turn = chain.from_iterable(zip_longest(*shuffled))
-    drawn = [mutant for mutant in in_turn if mutant is not None][:most]
-    chosen = set(drawn)
+    chosen = set([mutant for mutant in in_turn if mutant is not None][:most])
     return [mutant for mutant in mutants if mutant in chosen]
 
 
@@ -85,7 +85,8 @@ def scores_by_kind(outcomes: Iterable[tuple[str, str]]) -> list[KindScore]:
     `outcomes` are the mutations of mutants with what became of them: caught, survived, or what
     counts for neither.
     """
-    caught, counts = Counter[str](), Counter[str]()
+    caught = Counter[str]()
+    counts = Counter[str]()
     for mutation, fate in outcomes:
         if fate in ("caught", "survived"):
             kind = find_kind(mutation)
@@ -102,7 +103,7 @@ def why_right(mutant: Mutant) -> str:
         return "ROS 2 starts a launch file of any name"
     if mutant.mutation in ("name misspelt", "name exchanged"):
         match = _FREE_NAMES.search(place.partition(" -> ")[0])
-        if match is not None:
+        if match:
             return f"nothing refers to the name of <{match[1]}>"
     if mutant.mutation == "attribute deleted" and _FREE_OF_ROBOT.match(place):
         return "ROS 2 reads no <transmission> outside of <ros2_control>"

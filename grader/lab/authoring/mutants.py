@@ -7,14 +7,16 @@ mistakes in package.xml, setup.py, launch files and RViz files.
 """
 
 import ast
-import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from math import degrees
+from posixpath import basename
 from typing import NamedTuple
 
+from grader.base.grouping import Span
 from grader.base.markup import Attribute, attributes, element_end, head_end, name_end
+from grader.base.patterns import on_use
 from grader.base.source import Source
 from grader.ros.config.yaml_nodes import YamlNode, yaml_root
 from grader.ros.package.package import MANIFEST, SETUP, Package
@@ -22,10 +24,9 @@ from grader.ros.python.python_file import PythonFile, argument
 from grader.ros.xml.parsing import Element, parse_root
 from grader.ros.xml.urdf_format import JOINT_TYPES, PARTS
 
-_COMMA = re.compile(r"\s*,")
-_NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
+_COMMA = on_use(r"\s*,")
+_NUMBER = on_use(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 _NAMES = ("name", "link", "joint", "reference")
-_UNTOUCHED = ("version", "encoding", "params")
 _BOX = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
 
 
@@ -55,7 +56,7 @@ class MutantEdit(NamedTuple):
     """
 
     mutation: str
-    label: str
+    place: str
     start: int
     end: int
     new: str
@@ -72,15 +73,20 @@ def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator
     return _as_mutants(text, path, _changes(text, {f"link {name}" for name in hidden}))
 
 
-def _as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator[Mutant]:
-    """Yield the mutants that changes of a file make, each once and with an id of its own."""
-    seen: set[tuple[int, int, str]] = set()
+def _as_mutants(
+    text: str, path: str, changes: Iterable[MutantEdit], label: str = ""
+) -> Iterator[Mutant]:
+    """Yield the mutants that changes of a file make, each once and with an id of its own.
+
+    `label` is what ids have before the places in the file.
+    """
+    seen = set()
     ids: Counter[str] = Counter()
-    for mutation, label, start, end, new in changes:
+    for mutation, place, start, end, new in changes:
         if (start, end, new) in seen or text[start:end] == new:
             continue
         seen.add((start, end, new))
-        name = f"{mutation}: {label}"
+        name = f"{mutation}: {' '.join(filter(None, (label, place)))}"
         ids[name] += 1
         name += f" ({ids[name]})" if ids[name] > 1 else ""
         yield Mutant(name, mutation, path, text.count("\n", 0, start) + 1, start, end, new)
@@ -159,7 +165,8 @@ def _attribute_changes(
     attribute: Attribute,
     names: Mapping[str, Sequence[str]],
 ) -> MutantEdits:
-    name, span = attribute.name, attribute.value
+    name = attribute.name
+    span = attribute.value
     place = f"{label} {name}"
     yield MutantEdit("attribute deleted", place, attribute.start - 1, attribute.end, "")
     if name in _NAMES:
@@ -173,11 +180,11 @@ def _attribute_changes(
         yield from (
             MutantEdit("type", f"{place} -> {other}", *span, other) for other in JOINT_TYPES
         )
-    elif name not in _UNTOUCHED and not name.startswith("xmlns"):
+    elif name not in ("version", "encoding", "params") and not name.startswith("xmlns"):
         yield from _value_changes(text, label, span, name)
 
 
-def _value_changes(text: str, label: str, span: tuple[int, int], name: str) -> MutantEdits:
+def _value_changes(text: str, label: str, span: Span, name: str) -> MutantEdits:
     """Yield changes of a value: of each number in it, else of the text."""
     start, end = span
     label = f"{label} {name}".rstrip()
@@ -220,30 +227,29 @@ def misspelt(name: str) -> str:
 
 
 # Files for people: without them the package does the same.
-_UNUSED = re.compile(
+_UNUSED = on_use(
     r"(?i:\.(md|rst|(?<!CMakeLists\.)txt|pdf|docx|png|jpe?g|gif|svg|mp4))$"
     r"|(^|/)(test|tests|doc|docs|\.[^/]*)/"  # test/test_pep257.py, .github/workflows/build.yml
     r"|(^|/)(LICENSE|README|CHANGELOG|\.)[^/]*$"  # LICENSE, README.html, .gitignore
 )
 # Arguments of setup() that only people read.
-_FOR_PEOPLE = re.compile(
+_FOR_PEOPLE = on_use(
     "(long_)?description|(author|maintainer)(_email)?|(install|tests)_requires?|classifiers|exclude|keywords|license|url"
     "|version|zip_safe"
 )
-_XML_MUTATIONS = ("element deleted", "text misspelt", "name misspelt")
-_READ_OF_MANIFEST = re.compile(r"(name|export/build_type)\b")
+_READ_OF_MANIFEST = on_use(r"(name|export/build_type)\b")
 _DISPLAY_TEXTS = (("Class",), ("Description Topic", "Value"), ("Topic", "Value"))
 MAX_LABEL = 70
 
 _Text = Callable[[str], str]  # returns the text of a file by its path in the submission
-_Changes = Callable[[Source, str], Iterable[MutantEdit]]  # of a file with a label
+_Changes = Callable[[Source], Iterable[MutantEdit]]  # of a file
 
 
 def package_mutants(
     package: Package,
     links: Iterable[str],
     text: _Text,
-    further: _Changes = lambda _, __: (),
+    further: _Changes = lambda _: (),
     *,
     prefix: str = "",
 ) -> Iterator[Mutant]:
@@ -255,9 +261,10 @@ def package_mutants(
     package.
     """
     for file in package.tree.files:
-        path, label = package.path(file), prefix + file
+        path = package.path(file)
+        label = prefix + file
         if not _UNUSED.search(file):
-            name = path.rpartition("/")[2]
+            name = basename(path)
             renamed = f"{path.removesuffix(name)}{misspelt(name)}"
             yield Mutant(f"file deleted: {label}", "file deleted", path, 1, is_deleted=True)
             yield Mutant(
@@ -266,56 +273,54 @@ def package_mutants(
         source = Source(path, text(path))
         changes: Iterable[MutantEdit] = ()
         if file in package.rviz_files:
-            changes = _rviz(source, label, links)
+            changes = _rviz(source, links)
         elif file in (MANIFEST, SETUP) or file in package.launch_files:
-            changes = _file_changes(source, label, file)
-        yield from _as_mutants(source.text, path, chain(changes, further(source, label)))
+            changes = _file_changes(source, file)
+        yield from _as_mutants(source.text, path, chain(changes, further(source)), label)
 
 
-def _file_changes(source: Source, label: str, file: str) -> MutantEdits:
+def _file_changes(source: Source, file: str) -> MutantEdits:
     """Yield the changes of a file that builds or starts something, by its format."""
     if source.path.endswith(".py"):
-        yield from _python_changes(PythonFile(source), label, is_setup=file == SETUP)
+        yield from _python_changes(PythonFile(source), is_setup=file == SETUP)
         return
     for mutant in mutants(source.text):
         place = mutant.id.partition(": ")[2]
-        if mutant.mutation in _XML_MUTATIONS and (
+        if mutant.mutation in ("element deleted", "text misspelt", "name misspelt") and (
             file != MANIFEST or _READ_OF_MANIFEST.match(place)
         ):
-            yield MutantEdit(
-                mutant.mutation, f"{label} {place}", mutant.start, mutant.end, mutant.new
-            )
+            yield MutantEdit(mutant.mutation, place, mutant.start, mutant.end, mutant.new)
 
 
-def _rviz(source: Source, label: str, links: Iterable[str]) -> MutantEdits:
+def _rviz(source: Source, links: Iterable[str]) -> MutantEdits:
     """Yield changes of the fixed frame, and of each display.
 
     A display is disabled, or its class or topic is misspelt.
     """
     root = yaml_root(source)
     frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
-    if frame is not None and frame.text:
+    if frame and frame.text:
         for other in (misspelt(frame.text), *links):
-            yield MutantEdit("fixed frame", f"{label} -> {other}", *frame.span, other)
+            yield MutantEdit("fixed frame", f"-> {other}", *frame.span, other)
     displays = root.get("Visualization Manager", "Displays") if root else None
     for display in displays.items if displays else ():
-        yield from _display_changes(display, label)
+        yield from _display_changes(display)
 
 
-def _display_changes(display: YamlNode, label: str) -> MutantEdits:
-    title, enabled = display.get("Name") or display.get("Class"), display.get("Enabled")
-    place = f"{label} {title.text if title else ''}".rstrip()
-    if enabled is not None and enabled.text == "true":
+def _display_changes(display: YamlNode) -> MutantEdits:
+    title = display.get("Name") or display.get("Class")
+    enabled = display.get("Enabled")
+    place = title.text or "" if title else ""
+    if enabled and enabled.text == "true":
         yield MutantEdit("display disabled", place, *enabled.span, "false")
     for keys in _DISPLAY_TEXTS:
         node = display.get(*keys)
-        if node is not None and node.text:
-            yield MutantEdit(
-                "text misspelt", f"{place} {'/'.join(keys)}", *node.span, misspelt(node.text)
-            )
+        if node and node.text:
+            path = f"{place} {'/'.join(keys)}".lstrip()
+            yield MutantEdit("text misspelt", path, *node.span, misspelt(node.text))
 
 
-def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> MutantEdits:
+def _python_changes(file: PythonFile, *, is_setup: bool) -> MutantEdits:
     """Yield the changes of a Python file.
 
     An entry of data_files, an action or an import is deleted, a string is misspelt.
@@ -325,31 +330,29 @@ def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> MutantEd
         start, end = file.span(item)
         comma = _COMMA.match(file.text, end)
         end = comma.end() if comma else end
-        yield MutantEdit(mutation, f"{label} {_short(file, item)}", start, end, "")
+        yield MutantEdit(mutation, _short(file, item), start, end, "")
     for call in file.calls("add_action"):
         action = call.args[0] if call.args else call
-        yield MutantEdit(mutation, f"{label} {_short(file, action)}", *file.span(call), "None")
+        yield MutantEdit(mutation, _short(file, action), *file.span(call), "None")
     if is_setup:
         for node in file.imports:
-            place = f"{label} {file.segment(node)}"
-            yield MutantEdit("import deleted", place, *file.span(node), "pass")
-    yield from _string_changes(file, label)
+            yield MutantEdit("import deleted", file.segment(node), *file.span(node), "pass")
+    yield from _string_changes(file)
 
 
-def _string_changes(file: PythonFile, label: str) -> MutantEdits:
+def _string_changes(file: PythonFile) -> MutantEdits:
     """Yield that a string is misspelt, but none for people."""
-    ignored = [*_for_people(file)]
+    ignored = list(_for_people(file))
     for text, start, end in file.literals:
         is_ignored = any(first <= start < last for first, last in ignored)
         if text.strip() and not is_ignored:
-            place = f"{label} {text[:MAX_LABEL]}"
-            yield MutantEdit("string misspelt", place, start, end, misspelt(text))
+            yield MutantEdit("string misspelt", text[:MAX_LABEL], start, end, misspelt(text))
 
 
 def _entries(file: PythonFile) -> Iterator[ast.expr]:
     """Yield the entries of data_files, and the actions of a launch file."""
     given = [argument(call, "data_files") for call in file.calls("setup")]
-    lists = [keyword.value for keyword in given if keyword is not None]
+    lists = [keyword.value for keyword in given if keyword]
     lists += [call.args[0] for call in file.calls("LaunchDescription") if call.args]
     for value in lists:
         if isinstance(value, ast.List | ast.Tuple):
@@ -359,13 +362,13 @@ def _entries(file: PythonFile) -> Iterator[ast.expr]:
 def _short(file: PythonFile, node: ast.expr) -> str:
     """Return what tells an item of a list from others: the executable of a node, else its text."""
     executable = argument(node, "executable") if isinstance(node, ast.Call) else None
-    text = " ".join(file.segment(executable.value if executable is not None else node).split())
+    text = " ".join(file.segment(executable.value if executable else node).split())
     if len(text) <= MAX_LABEL:
         return text.strip("'\"")
     return text[:MAX_LABEL]
 
 
-def _for_people(file: PythonFile) -> Iterator[tuple[int, int]]:
+def _for_people(file: PythonFile) -> Iterator[Span]:
     """Yield the offsets of docstrings and of arguments that only people read."""
     for node in file.nodes:
         match node:

@@ -12,14 +12,19 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from grader.base.errors import InputError, NotDecided
+from grader.base.grouping import StringsByName, as_list
+from grader.base.patterns import on_use
 from grader.base.source import Source
 from grader.lab.authoring.package_equivalents import (
     Files,
+    Rewritings,
+    Span,
     as_rewriting,
     python_launches,
-    read_text,
+    span_with_comma,
+    with_spans,
 )
-from grader.lab.submission.edited import with_files
+from grader.lab.submission.edited import text_of, with_files
 from grader.lab.submission.submission import Submission
 from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.launch.launch_model import StartedNode
@@ -27,10 +32,11 @@ from grader.ros.nodes.node_facts import Endpoint, NodeFacts
 from grader.ros.package.package import SETUP, Package
 from grader.ros.python.python_file import PythonFile, argument
 
-_IN_LAUNCH, _IN_FILE = "parameters in the launch file", "parameters in a parameter file"
-_REMAPPED, _IN_ONE_PROGRAM = "names remapped", "two nodes in one program"
-_TOPICS_AND_SERVICES = ("publisher", "subscription", "service", "client")
-_RELATIVE = re.compile(r"[A-Za-z]\w*(?:/\w+)*")
+_IN_LAUNCH = "parameters in the launch file"
+_IN_FILE = "parameters in a parameter file"
+_REMAPPED = "names remapped"
+_IN_ONE_PROGRAM = "two nodes in one program"
+_RELATIVE = on_use(r"[A-Za-z]\w*(?:/\w+)*")
 _MAX_CALL = 400  # characters from the place of an end to its name
 _SCALARS = (bool, int, float, str)
 _FOLDERS = ("config", "params", "launch")
@@ -38,7 +44,6 @@ _IMPORTS = (
     "from launch.substitutions import PathJoinSubstitution as _Path\n"
     "from launch_ros.substitutions import FindPackageShare as _Share\n"
 )
-_ARGUMENT = "LaunchConfiguration"
 _PROGRAM = "both_2x"
 _PROGRAM_TEXT = """import rclpy
 from rclpy.executors import MultiThreadedExecutor
@@ -53,6 +58,7 @@ def main():
         executor.add_node(node)
     executor.spin()
 """
+_Spans = list[Span]  # of a file
 
 
 class _NodeCall(NamedTuple):
@@ -67,10 +73,13 @@ class _NodeCall(NamedTuple):
     def read_argument(self, name: str) -> str:
         """Return the text of an argument; empty if it is not given."""
         given = argument(self.call, name)
-        return self.file.segment(given.value) if given is not None else ""
+        return self.file.segment(given.value) if given else ""
 
 
-def node_equivalents(submission: Submission, named: Collection[str]) -> Iterator[tuple[str, Files]]:
+_NodeCalls = Sequence[_NodeCall]
+
+
+def node_equivalents(submission: Submission, named: Collection[str]) -> Rewritings:
     """Yield each rewriting with the files that it changes; `named` are the texts of the rubric."""
     calls: list[_NodeCall] = []
     for package in submission.lab_packages.values():
@@ -84,7 +93,7 @@ def node_equivalents(submission: Submission, named: Collection[str]) -> Iterator
 def _node_calls(submission: Submission, package: Package) -> Iterator[_NodeCall]:
     """Yield the calls of Node that each start one own node, of which all is known."""
     code = submission.workspace.code
-    roots = {launch.source.path for _, launch in submission.workspace.launches.roots}
+    roots = {launch.source.path for launch in submission.workspace.launches.outermost}
     for path, file in python_launches(submission, package):
         if path not in roots:
             continue  # the launch files that include it give it arguments
@@ -97,20 +106,14 @@ def _node_calls(submission: Submission, package: Package) -> Iterator[_NodeCall]
             at = file.source.at(file.span(call)[0])
             started = nodes.get((at.line, at.column), [])
             facts = code.own_node(started[0]) if len(started) == 1 and started[0].when else None
-            is_argument = _ARGUMENT in file.written(call)
-            if facts is not None and not facts.doubts and not is_argument:
+            is_argument = "LaunchConfiguration" in file.written(call)
+            if facts and not facts.doubts and not is_argument:
                 yield _NodeCall(package, file, call, started[0], facts)
 
 
-def _edited(edits: Mapping[str, list[tuple[int, int, str]]], texts: Mapping[str, str]) -> Files:
+def _edited(edits: Mapping[str, _Spans], texts: StringsByName) -> Files:
     """Return files after edits of spans, by their paths."""
-    files: dict[str, str | None] = {}
-    for path, spans in edits.items():
-        text = texts[path]
-        for start, end, new in sorted(spans, reverse=True):
-            text = text[:start] + new + text[end:]
-        files[path] = text
-    return files
+    return {path: with_spans(texts[path], spans) for path, spans in edits.items()}
 
 
 # --- Parameters
@@ -132,7 +135,7 @@ def _values_given(submission: Submission, each: _NodeCall) -> dict[str, Any] | N
 
 def _is_plain(value: Any) -> bool:
     """Return whether launch and YAML write a value alike."""
-    items = value if isinstance(value, list) else [value]
+    items = as_list(value)
     if not items:
         return False
     for item in items:
@@ -143,28 +146,28 @@ def _is_plain(value: Any) -> bool:
     return True
 
 
-def _with_tables(submission: Submission, calls: Sequence[_NodeCall]) -> Files:
+def _with_tables(submission: Submission, calls: _NodeCalls) -> Files:
     """Return launch files that give nodes the values of parameter files in tables."""
-    edits: dict[str, list[tuple[int, int, str]]] = {}
+    edits: dict[str, _Spans] = {}
     texts = {each.file.source.path: each.file.text for each in calls}
     for each in calls:
         written = argument(each.call, "parameters")
         values = _values_given(submission, each)
         has_file = any(given.path for given in each.node.parameters or ())
-        if written is not None and values and has_file:
+        if written and values and has_file:
             span = (*each.file.span(written.value), f"[{values!r}]")
             edits.setdefault(each.file.source.path, []).append(span)
     return _edited(edits, texts)
 
 
-def _with_file(submission: Submission, calls: Sequence[_NodeCall]) -> Files:
+def _with_file(submission: Submission, calls: _NodeCalls) -> Files:
     """Return a launch file that gives a node the values of its tables in a parameter file."""
     for each in calls:
         written = argument(each.call, "parameters")
         values = _values_given(submission, each)
         given = each.node.parameters or ()
         is_table = all(one.is_plain and not one.path for one in given)
-        if written is None or not values or not is_table or any("." in name for name in values):
+        if not written or not values or not is_table or any("." in name for name in values):
             continue
         lines = [f"    {name}: {json.dumps(value)}\n" for name, value in values.items()]
         text = f"/**:\n  ros__parameters:\n{''.join(lines)}"
@@ -179,10 +182,9 @@ def _moved_to_file(each: _NodeCall, written: ast.expr, path: str, text: str) -> 
     """Return a launch file that names a new parameter file, and that file."""
     folder, name = posixpath.split(path)
     found_by = f"_Path([_Share({each.package.name!r}), {folder!r}, {name!r}])"
-    start, end = each.file.span(written)
-    changed = f"{each.file.text[:start]}[{found_by}]{each.file.text[end:]}"
     at, _ = each.file.span(each.file.imports[0])
-    changed = changed[:at] + _IMPORTS + changed[at:]
+    spans = [(*each.file.span(written), f"[{found_by}]"), (at, at, _IMPORTS)]
+    changed = with_spans(each.file.text, spans)
     return {each.file.source.path: changed, each.package.path(path): text}
 
 
@@ -202,18 +204,18 @@ def _is_installed(
 # --- Names
 
 
-def _with_remappings(submission: Submission, calls: Sequence[_NodeCall]) -> Files:
+def _with_remappings(submission: Submission, calls: _NodeCalls) -> Files:
     """Return code with other names of topics and services, which launch files remap."""
     started: dict[str, list[_NodeCall]] = {}
     for each in calls:
         started.setdefault(each.facts.location.path, []).append(each)
-    edits: dict[str, list[tuple[int, int, str]]] = {}
-    texts: dict[str, str] = {}
+    edits: dict[str, _Spans] = {}
+    texts = {}
     for path, of_file in started.items():
         is_free = all(each.node.remaps == () for each in of_file)
         if not is_free or _is_started_otherwise(submission, path, of_file):
             continue
-        texts[path] = read_text(submission, path)
+        texts[path] = text_of(submission, path)
         names: dict[str, None] = {}
         for endpoint in of_file[0].facts.endpoints:
             span = _name_span(texts[path], path, endpoint)
@@ -230,30 +232,29 @@ def _with_remappings(submission: Submission, calls: Sequence[_NodeCall]) -> File
     return _edited(edits, texts)
 
 
-def _is_started_otherwise(submission: Submission, path: str, calls: Sequence[_NodeCall]) -> bool:
+def _is_started_otherwise(submission: Submission, path: str, calls: _NodeCalls) -> bool:
     """Return whether the code of a file is started by other launch files or calls."""
     code = submission.workspace.code
     of_file = 0
-    for _, node in submission.workspace.launches.nodes:
+    for node in submission.workspace.launches.nodes:
         of_file += any(facts.location.path == path for facts in code.find_nodes(node))
-    in_file = [
-        facts
-        for nodes in code.by_package.values()
-        for facts in nodes.nodes
-        if facts.location.path == path
-    ]
+    in_file = [facts for facts in code.nodes if facts.location.path == path]
     return of_file != len(calls) or len(in_file) != 1
 
 
 def _name_span(text: str, path: str, endpoint: Endpoint) -> tuple[int, int] | None:
     """Return the span of the name of an end in the code; None if it is not written there."""
     name = endpoint.name
-    if name is None or endpoint.kind not in _TOPICS_AND_SERVICES or not _RELATIVE.fullmatch(name):
+    if (
+        name is None
+        or endpoint.kind not in ("publisher", "subscription", "service", "client")
+        or not _RELATIVE.fullmatch(name)
+    ):
         return None
     start = Source(path, text).start_offset(endpoint.location)
     quoted_name = re.compile(rf"([\"']){re.escape(name)}\1")
     match = quoted_name.search(text, start, start + _MAX_CALL)
-    if match is None or ";" in text[start : match.start()]:
+    if not match or ";" in text[start : match.start()]:
         return None
     return match.start() + 1, match.end() - 1
 
@@ -261,9 +262,7 @@ def _name_span(text: str, path: str, endpoint: Endpoint) -> tuple[int, int] | No
 # --- Programs
 
 
-def _in_one_program(
-    submission: Submission, calls: Sequence[_NodeCall], named: Collection[str]
-) -> Files:
+def _in_one_program(submission: Submission, calls: _NodeCalls, named: Collection[str]) -> Files:
     """Return a program of Python that has two nodes, and a launch file that starts it."""
     can_join = [each for each in calls if _can_join(submission, each, named)]
     for first in can_join:
@@ -278,7 +277,8 @@ def _in_one_program(
 
 def _can_join(submission: Submission, each: _NodeCall, named: Collection[str]) -> bool:
     """Return whether a node may be in the process of another one."""
-    node, facts = each.node, each.facts
+    node = each.node
+    facts = each.facts
     has_name = facts.name is not None and node.node_name in ("", facts.name)
     is_plain = has_name and not node.namespace and node.remaps == () and not node.arguments
     is_class = facts.location.path.endswith(".py") and bool(facts.class_name)
@@ -292,16 +292,16 @@ def _can_join(submission: Submission, each: _NodeCall, named: Collection[str]) -
 def _find_module(submission: Submission, each: _NodeCall) -> str:
     """Return the module of a program, as setup.py has it once; empty if it does not."""
     owner = submission.workspace.find_package(each.node)
-    if owner is None or owner.is_cmake:
+    if not owner or owner.is_cmake:
         return ""
-    setup = read_text(submission, owner.path(SETUP))
+    setup = text_of(submission, owner.path(SETUP))
     modules = re.findall(rf"[\"']{re.escape(each.node.executable)} *= *([\w.]+):\w+[\"']", setup)
     return modules[0] if len(modules) == 1 else ""
 
 
 def _has_no_arguments(submission: Submission, facts: NodeFacts) -> bool:
     """Return whether a class of nodes is made without arguments."""
-    source = Source(facts.location.path, read_text(submission, facts.location.path))
+    source = Source(facts.location.path, text_of(submission, facts.location.path))
     name = facts.class_name.rpartition(".")[2]
     for node in PythonFile(source).nodes:
         if isinstance(node, ast.ClassDef) and node.name == name:
@@ -313,7 +313,7 @@ def _has_no_arguments(submission: Submission, facts: NodeFacts) -> bool:
 
 def _are_separate(first: StartedNode, second: StartedNode) -> bool:
     """Return whether no parameter that a launch file gives one node is one of the other."""
-    names: list[set[str]] = []
+    names = []
     for node in (first, second):
         of_node: set[str] = set()
         for given in node.parameters or ():
@@ -329,9 +329,10 @@ def _join(submission: Submission, first: _NodeCall, second: _NodeCall) -> Files:
     owner = submission.workspace.find_package(first.node)
     entry = _find_entry(second)
     parameters = _joined_lists(first, second)
-    if owner is None or entry is None or parameters is None:
+    if not owner or not entry or parameters is None:
         return {}
-    imports, made = [], []
+    imports = []
+    made = []
     for each in (first, second):
         name = each.facts.class_name.rpartition(".")[2]
         imports.append(f"from {_find_module(submission, each)} import {name}")
@@ -344,7 +345,7 @@ def _join(submission: Submission, first: _NodeCall, second: _NodeCall) -> Files:
     folder = posixpath.dirname(first.facts.location.path)
     return {
         f"{folder}/{_PROGRAM}.py": program,
-        setup: re.sub(before, after, read_text(submission, setup)),
+        setup: re.sub(before, after, text_of(submission, setup)),
         first.file.source.path: _launch_joined(first, entry, parameters),
     }
 
@@ -378,25 +379,17 @@ def _find_entry(each: _NodeCall) -> ast.expr | None:
 
 def _launch_joined(first: _NodeCall, entry: ast.expr, parameters: str) -> str:
     """Return a launch file that starts the program of two nodes in place of both."""
-    file, text = first.file, first.file.text
-    spans: list[tuple[int, int, str]] = []
-    start, end = file.span(entry)
-    after = re.compile(r"\s*,?").match(text, end)
-    spans.append((start, after.end() if after else end, ""))
+    file = first.file
+    spans = [(*span_with_comma(file, entry), "")]
     given = {name: argument(first.call, name) for name in ("executable", "name", "parameters")}
     written, named, listed = given.values()
-    assert written is not None  # it is a node of a program
-    start, end = file.span(written)
+    assert written  # it is a node of a program
     program = f"executable={_PROGRAM!r}"
-    if listed is not None:
+    if listed:
         spans.append((*file.span(listed.value), f"[{parameters}]"))
     elif parameters:
         program += f", parameters=[{parameters}]"
-    spans.append((start, end, program))
-    if named is not None:
-        start, end = file.span(named)
-        after = re.compile(r"\s*,?").match(text, end)
-        spans.append((start, after.end() if after else end, ""))
-    for start, end, new in sorted(spans, reverse=True):
-        text = text[:start] + new + text[end:]
-    return text
+    spans.append((*file.span(written), program))
+    if named:
+        spans.append((*span_with_comma(file, named), ""))
+    return with_spans(file.text, spans)

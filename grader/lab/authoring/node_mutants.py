@@ -2,10 +2,14 @@
 
 import ast
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from itertools import pairwise
 
+from grader.base.grouping import StringsByName
+from grader.base.names import last_part
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source
+from grader.base.toml_file import toml_literal
 from grader.lab.authoring.mutants import (
     MAX_LABEL,
     MutantEdit,
@@ -13,14 +17,14 @@ from grader.lab.authoring.mutants import (
     misspelt,
 )
 from grader.lab.submission.submission import Submission
+from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.package.package import CMAKE
 from grader.ros.python.python_file import PythonFile
 from grader.workspace.rules.rule_table import Family
 
-_INTERFACES = (".msg", ".srv", ".action")
-_FIELD = re.compile(r"(?m)^[\w/<=\[\]]+[ \t]+([a-z]\w*)[ \t]*(?=$|#| )")
-_SEPARATOR = re.compile(r"(?m)^---$\n?")
-_TYPE = re.compile(
+_FIELD = on_use(r"(?m)^[\w/<=\[\]]+[ \t]+([a-z]\w*)[ \t]*(?=$|#| )")
+_SEPARATOR = on_use(r"(?m)^---$\n?")
+_TYPE = on_use(
     r"(?m)^((?:bool|byte|char|string|u?int(?:8|16|32|64)|float(?:32|64)))[ \t]+([a-z]\w*)"
 )
 _CPP = (".cpp", ".cc", ".cxx", ".hpp", ".h")
@@ -31,24 +35,32 @@ _CPP_STATEMENTS = {
         r"(?m)^[ \t]*(?:this->)?declare_parameter(?:<[^;{}]*>)?\([^;{}]*;"
     ),
 }
-_GENERATED = re.compile(r"\"?\b((?:msg|srv|action)/\w+\.(?:msg|srv|action))\b\"?")
+# What a server does with goals, by the argument of serves_action: what it does no longer.
+_FEEDBACK = on_use(r"(?m)^[ \t]*+([^\n(]*publish_feedback\([^\n]*+)$")
+_ANSWERS = {
+    "cancel": ("cancel rejected", on_use(r"\bCancelResponse(?:\.|::)(ACCEPT)\b"), "REJECT"),
+    "rejects": ("goal accepted", on_use(r"\bGoalResponse(?:\.|::)(REJECT)\b"), "ACCEPT"),
+}
+_READ = on_use(
+    r"(?:self\.|this->)?get_parameter\(\s*+[\"']([^\"'\n]++)[\"']\s*+\)\.(?:value|as_\w++\(\))"
+)
+_GENERATED = on_use(r"\"?\b((?:msg|srv|action)/\w+\.(?:msg|srv|action))\b\"?")
 # Statements of rclpy without which a node does not work, and what each is.
 _STATEMENTS = {"init": "init", "__init__": "constructor", "declare_parameter": "declaration"}
 _BEST_EFFORT = "qos_profile_sensor_data"  # where a file imports it
 _CALLBACKS = {"create_timer": 1, "create_subscription": 2, "create_service": 2, "ActionServer": 3}
 # A statement of a node that needs what super().__init__() makes.
-_NEEDS_NODE = re.compile(r"(?:self\.\w+ = )?self\.(?:create_|declare_|get_parameter)")
-_ANSWERING = ("create_service", "ActionServer")
+_NEEDS_NODE = on_use(r"(?:self\.\w+ = )?self\.(?:create_|declare_|get_parameter)")
 
 
 def node_changes(
-    submission: Submission, source: Source, label: str, families: Collection[Family]
+    submission: Submission, source: Source, families: Collection[Family]
 ) -> MutantEdits:
     """Yield the changes of a file that a criterion about interfaces, or about code, should find."""
     if "interfaces" in families:
-        yield from _interface_changes(source, label)
+        yield from _interface_changes(source)
     if source.path.endswith(_CPP) and "code" in families and "rclcpp" in source.text:
-        yield from _cpp_changes(source, label)
+        yield from _cpp_changes(source)
     if not source.path.endswith(".py"):
         return
     if "interfaces" in families:
@@ -56,16 +68,16 @@ def node_changes(
             for use in nodes.field_uses:
                 if use.type.endswith(".GoalHandle") and len(use.path) == 1:
                     continue  # an attribute of rclpy's
-                yield from _misspelt_at(source, label, use.location, use.path[-1])
+                yield from _misspelt_at(source, use.location, use.path[-1])
             for node_import in nodes.imports:
                 yield from _misspelt_at(
-                    source, label, node_import.location, node_import.name.split(".")[-1]
+                    source, node_import.location, node_import.name.split(".")[-1]
                 )
     if "code" in families and "rclpy" in source.text:
-        yield from _code_changes(PythonFile(source), label)
+        yield from _code_changes(PythonFile(source))
 
 
-def type_changes(source: Source, label: str, topics: Collection[str]) -> MutantEdits:
+def type_changes(source: Source, topics: Collection[str]) -> MutantEdits:
     """Yield that a node in Python opens one of these topics with another type that it imports."""
     if not source.path.endswith(".py") or "rclpy" not in source.text:
         return
@@ -79,13 +91,41 @@ def type_changes(source: Source, label: str, topics: Collection[str]) -> MutantE
             case ast.Call(
                 func=ast.Attribute(attr="create_publisher" | "create_subscription"),
                 args=[ast.Name(id=name) as kind, ast.Constant(value=str(topic)), *_],
-            ) if topic.rpartition("/")[2] in topics:
+            ) if last_part(topic) in topics:
                 for other in [other for other in types if other != name][:1]:
-                    place = f"{label} {topic} {name}"
+                    place = f"{topic} {name}"
                     yield MutantEdit("type of a topic changed", place, *file.span(kind), other)
 
 
-def _cpp_changes(source: Source, label: str) -> MutantEdits:
+def goal_changes(source: Source, asked: Collection[str]) -> MutantEdits:
+    """Yield that a server no longer does with goals what serves_action asks for."""
+    nothing = "pass" if source.path.endswith(".py") else ";"
+    changes = {"feedback": ("feedback removed", _FEEDBACK, nothing), **_ANSWERS}
+    for argument in asked:
+        mutation, pattern, new = changes[argument]
+        for match in pattern.finditer(source.text):
+            place = f"line {source.at(match.start(1)).line}"
+            yield MutantEdit(mutation, place, *match.span(1), new)
+
+
+def defaults_in(nodes: Iterable[NodeFacts], names: Collection[str]) -> dict[str, str]:
+    """Return the defaults of these parameters of nodes, as code has them, by their names."""
+    defaults = {}
+    for parameter in (parameter for node in nodes for parameter in node.parameters):
+        name = parameter.name or ""
+        if name in names and type(parameter.default) in (int, float, str):
+            defaults[name] = toml_literal(parameter.default)
+    return defaults
+
+
+def default_changes(source: Source, defaults: StringsByName) -> MutantEdits:
+    """Yield that the default of a parameter is used where its value is read."""
+    for match in _READ.finditer(source.text):
+        if match[1] in defaults:
+            yield MutantEdit("parameter ignored", match[1], *match.span(), defaults[match[1]])
+
+
+def _cpp_changes(source: Source) -> MutantEdits:
     """Yield the changes of a node in C++.
 
     rclcpp is not initialised, nothing spins, a parameter is not declared, or a callback returns
@@ -93,11 +133,11 @@ def _cpp_changes(source: Source, label: str) -> MutantEdits:
     """
     for mutation, pattern in _CPP_STATEMENTS.items():
         for match in pattern.finditer(source.text):
-            place = f"{label} {' '.join(match[0].split())[:MAX_LABEL]}"
+            place = " ".join(match[0].split())[:MAX_LABEL]
             yield MutantEdit(mutation, place, *match.span(), "")
 
 
-def _interface_changes(source: Source, label: str) -> MutantEdits:
+def _interface_changes(source: Source) -> MutantEdits:
     """Yield the changes of an interface.
 
     Each field is misspelt or of another type, each separator is removed, and each interface is
@@ -105,66 +145,63 @@ def _interface_changes(source: Source, label: str) -> MutantEdits:
     """
     if source.path.endswith(CMAKE):
         for named in _GENERATED.finditer(source.text):
-            yield MutantEdit("interface not generated", f"{label} {named[1]}", *named.span(1), "")
-    if not source.path.endswith(_INTERFACES):
+            yield MutantEdit("interface not generated", named[1], *named.span(1), "")
+    if not source.path.endswith((".msg", ".srv", ".action")):
         return
     for match in _FIELD.finditer(source.text):
-        yield MutantEdit("field renamed", f"{label} {match[1]}", *match.span(1), misspelt(match[1]))
+        yield MutantEdit("field renamed", match[1], *match.span(1), misspelt(match[1]))
     for match in _TYPE.finditer(source.text):
         other = "string" if match[1] != "string" else "int32"
-        yield MutantEdit("field type changed", f"{label} {match[2]}", *match.span(1), other)
+        yield MutantEdit("field type changed", match[2], *match.span(1), other)
     for match in _SEPARATOR.finditer(source.text):
-        yield MutantEdit("separator removed", label, *match.span(), "")
+        yield MutantEdit("separator removed", "", *match.span(), "")
 
 
-def _misspelt_at(source: Source, label: str, at: Location, name: str) -> MutantEdits:
+def _misspelt_at(source: Source, at: Location, name: str) -> MutantEdits:
     """Yield that a name is misspelt where it is used."""
     if at.path != source.path:
         return
     start = source.start_offset(at)
     if source.text.startswith(name, start):
-        end = start + len(name)
-        yield MutantEdit("name misspelt", f"{label} {name}", start, end, misspelt(name))
+        yield MutantEdit("name misspelt", name, start, start + len(name), misspelt(name))
 
 
-def _code_changes(file: PythonFile, label: str) -> MutantEdits:
+def _code_changes(file: PythonFile) -> MutantEdits:
     """Yield that nothing spins, a callback is called, or a response is not returned."""
-    answering: set[str] = set()
+    answering = set()
     for node in file.nodes:
         match node:
             case ast.Expr(value=ast.Call(func=ast.Attribute(attr="spin"))):
-                place = f"{label} {file.segment(node)[:MAX_LABEL]}"
-                yield MutantEdit("spin removed", place, *file.span(node), "pass")
+                yield _removed(file, "spin removed", node)
             case ast.Call(func=ast.Attribute(attr=name) | ast.Name(id=name)) if name in _CALLBACKS:
                 given = node.args[_CALLBACKS[name] :][:1]
                 for callback in given:
                     text = file.segment(callback)
                     if isinstance(callback, ast.Attribute):
-                        place = f"{label} {name} {text}"
-                        yield MutantEdit(
-                            "callback called", place, *file.span(callback), f"{text}()"
-                        )
-                    if isinstance(callback, ast.Attribute) and name in _ANSWERING:
-                        answering.add(callback.attr)
-    yield from _call_changes(file, label)
-    yield from _return_changes(file, label, answering)
-    yield from _parameter_changes(file, label)
-    yield from _instance_changes(file, label)
-    yield from _order_changes(file, label)
+                        place = f"{name} {text}"
+                        call = f"{text}()"
+                        yield MutantEdit("callback called", place, *file.span(callback), call)
+                        if name in ("create_service", "ActionServer"):
+                            answering.add(callback.attr)
+    yield from _call_changes(file)
+    yield from _return_changes(file, answering)
+    yield from _parameter_changes(file)
+    yield from _instance_changes(file)
+    yield from _order_changes(file)
 
 
-def _return_changes(file: PythonFile, label: str, answering: Collection[str]) -> MutantEdits:
+def _return_changes(file: PythonFile, answering: Collection[str]) -> MutantEdits:
     """Yield that one of these callbacks does not return its response."""
     for node in file.nodes:
         if isinstance(node, ast.FunctionDef) and node.name in answering:
             last = node.body[-1]
             if isinstance(last, ast.Return):
-                place = f"{label} {node.name}"
-                yield MutantEdit("response not returned", place, *file.span(last), "pass")
-                yield MutantEdit("response replaced", place, *file.span(last), "return True")
+                span = file.span(last)
+                yield MutantEdit("response not returned", node.name, *span, "pass")
+                yield MutantEdit("response replaced", node.name, *span, "return True")
 
 
-def _parameter_changes(file: PythonFile, label: str) -> MutantEdits:
+def _parameter_changes(file: PythonFile) -> MutantEdits:
     """Yield that a callback lacks its last parameter, or has one more.
 
     A callback of a subscription may have one more.
@@ -183,7 +220,7 @@ def _parameter_changes(file: PythonFile, label: str) -> MutantEdits:
                 places = _parameter_places(file, functions[name], is_method=is_method)
                 for mutation, start, end, new in places:
                     if called != "create_subscription" or not new:
-                        yield MutantEdit(mutation, f"{label} {name}", start, end, new)
+                        yield MutantEdit(mutation, name, start, end, new)
 
 
 def _parameter_places(
@@ -200,9 +237,9 @@ def _parameter_places(
         yield "callback parameter removed", file.span(names[-2])[1], end, ""
 
 
-def _instance_changes(file: PythonFile, label: str) -> MutantEdits:
+def _instance_changes(file: PythonFile) -> MutantEdits:
     """Yield that a message or a node is replaced by its class."""
-    made: dict[str, str] = {}  # the classes of variables
+    made = {}  # the classes of variables
     for node in file.nodes:
         match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=ast.Name(id=kind))):
@@ -215,11 +252,11 @@ def _instance_changes(file: PythonFile, label: str) -> MutantEdits:
                 kind = name if isinstance(given, ast.Call) else made.get(name, "")
                 if kind[:1].isupper():
                     mutation = "message" if method == "publish" else "spin"
-                    place = f"{label} {file.segment(node)[:MAX_LABEL]}"
+                    place = file.segment(node)[:MAX_LABEL]
                     yield MutantEdit(f"{mutation} of a class", place, *file.span(given), kind)
 
 
-def _order_changes(file: PythonFile, label: str) -> MutantEdits:
+def _order_changes(file: PythonFile) -> MutantEdits:
     """Yield that a node declares or opens something before its base class is initialised."""
     for node in file.nodes:
         if not isinstance(node, ast.FunctionDef) or node.name != "__init__":
@@ -229,11 +266,11 @@ def _order_changes(file: PythonFile, label: str) -> MutantEdits:
             if "super().__init__(" in texts[0] and _NEEDS_NODE.match(texts[1]):
                 (start, between), (behind, end) = file.span(first), file.span(second)
                 swapped = f"{texts[1]}{file.text[between:behind]}{texts[0]}"
-                place = f"{label} {texts[1][:MAX_LABEL]}"
+                place = texts[1][:MAX_LABEL]
                 yield MutantEdit("constructor after its use", place, start, end, swapped)
 
 
-def _call_changes(file: PythonFile, label: str) -> MutantEdits:
+def _call_changes(file: PythonFile) -> MutantEdits:
     """Yield the changes of calls of rclpy.
 
     A statement is missing, a quality of service is another one, or a call of a service waits.
@@ -241,31 +278,30 @@ def _call_changes(file: PythonFile, label: str) -> MutantEdits:
     for node in file.nodes:
         match node:
             case ast.Expr(value=ast.Call(func=ast.Attribute(attr=name))) if name in _STATEMENTS:
-                yield _removed(file, label, f"{_STATEMENTS[name]} removed", node)
+                yield _removed(file, f"{_STATEMENTS[name]} removed", node)
             case ast.Call(func=ast.Attribute(attr=name), args=[_, _, *_, quality]):
-                yield from _requalified(file, label, node, quality, name)
+                yield from _requalified(file, node, quality, name)
             case ast.Attribute(attr="call_async"):
                 _, end = file.span(node)
-                place = f"{label} {file.segment(node)[:MAX_LABEL]}"
+                place = file.segment(node)[:MAX_LABEL]
                 yield MutantEdit("call awaited", place, end - len("call_async"), end, "call")
 
 
-def _removed(file: PythonFile, label: str, mutation: str, node: ast.Expr) -> MutantEdit:
+def _removed(file: PythonFile, mutation: str, node: ast.Expr) -> MutantEdit:
     """Return that a statement is missing."""
-    place = f"{label} {file.segment(node)[:MAX_LABEL]}"
+    place = file.segment(node)[:MAX_LABEL]
     return MutantEdit(mutation, place, *file.span(node), "pass")
 
 
-def _requalified(
-    file: PythonFile, label: str, call: ast.Call, quality: ast.expr, name: str
-) -> MutantEdits:
+def _requalified(file: PythonFile, call: ast.Call, quality: ast.expr, name: str) -> MutantEdits:
     """Yield that a publisher is best effort, a subscription to one reliable, or a depth a text."""
-    is_depth, new = isinstance(quality, ast.Constant), ""
+    is_depth = isinstance(quality, ast.Constant)
+    new = ""
     if name == "create_publisher" and is_depth and _BEST_EFFORT in file.text:
         new = _BEST_EFFORT
     elif name == "create_subscription" and not is_depth:
         new = "10"
-    place = f"{label} {file.segment(call)[:MAX_LABEL]}"
+    place = file.segment(call)[:MAX_LABEL]
     if is_depth and name in ("create_publisher", "create_subscription"):
         text = f"'{file.segment(quality)}'"
         yield MutantEdit("quality of service as text", place, *file.span(quality), text)

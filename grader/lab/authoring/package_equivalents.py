@@ -6,36 +6,41 @@ known, a setup.py that installs data only, a file that nothing names in another 
 
 import ast
 import json
-import posixpath
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from posixpath import basename, split, splitext
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
+from grader.base.grouping import StringsByName
+from grader.base.patterns import on_use
 from grader.base.source import Source
-from grader.lab.submission.edited import content
+from grader.lab.submission.edited import text_of
 from grader.lab.submission.submission import Submission
 from grader.ros.installation.places import PREFIX
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 from grader.ros.python.python_file import PythonFile, argument
 
-_ENDING_BY_LANGUAGE: Mapping[str, str] = {
+_ENDING_BY_LANGUAGE = {
     "launch file in XML": ".xml",
     "launch file in YAML": ".yaml",
     "launch file in Python": ".py",
 }
 BUILT_BY_CMAKE = "package built by CMake"
 _LAUNCHING = ("launch", "launch_ros")  # the packages that a launch file in Python imports
-_UNNAMED, _LATER = "nodes without the name of their program", "spawners after an event"
-_RENAMED, _SYSTEM_RENAMED = "files renamed", "<ros2_control> renamed"
+_UNNAMED = "nodes without the name of their program"
+_LATER = "spawners after an event"
+_RENAMED = "files renamed"
+_SYSTEM_RENAMED = "<ros2_control> renamed"
 Files = Mapping[str, str | None]  # the new texts of files by their paths; None for one that goes
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".txt", ".cfg", ".sdf", ".launch")
-_FREE_FILES = re.compile(r"(^|/)(config|params|worlds?|parameters)/[^/]+\.(ya?ml|sdf|world)$")
-_SHARE = re.compile(rf"^{re.escape(PREFIX)}/share/([^/]+)/(.+)$")
-_FOUND = re.compile(r"\$\(find-pkg-share ([^)]+)\)/(.+)")
-_SYSTEM = re.compile(r"<ros2_control\s[^<>]*?\bname=(['\"])([\w-]+)\1")
-_PROGRAMS = re.compile("console_scripts|scripts *=|gui_scripts")
+_FREE_FILES = on_use(r"(^|/)(config|params|worlds?|parameters)/[^/]+\.(ya?ml|sdf|world)$")
+_SHARE = on_use(rf"^{re.escape(PREFIX)}/share/([^/]+)/(.+)$")
+_FOUND = on_use(r"\$\(find-pkg-share ([^)]+)\)/(.+)")
+_SYSTEM = on_use(r"<ros2_control\s[^<>]*?\bname=(['\"])([\w-]+)\1")
+_COMMA = on_use(r"\s*,?")
+_PROGRAMS = on_use("console_scripts|scripts *=|gui_scripts")
 _IMPORTS = (
     "from launch.actions import RegisterEventHandler as _Handler, TimerAction as _Timer\n"
     "from launch.event_handlers import OnProcessStart as _OnStart\n"
@@ -46,13 +51,17 @@ find_package(ament_cmake REQUIRED)
 {installs}
 ament_package()
 """
+_NodeTables = Sequence[Mapping[str, Any]]  # of a launch file
+Span = tuple[int, int, str]  # from where to where there is which text
+_Table = dict[str, Any]
+Rewritings = Iterator[tuple[str, Files]]  # each with the files that it changes
 
 
 def package_equivalents(
     submission: Submission, named: Collection[str], robot_files: Sequence[str]
-) -> Iterator[tuple[str, Files]]:
+) -> Rewritings:
     """Yield each rewriting with the files that it changes; `named` are the texts of the rubric."""
-    packages = [*submission.lab_packages.values()]
+    packages = list(submission.lab_packages.values())
     for language, ending in _ENDING_BY_LANGUAGE.items():
         yield from as_rewriting(
             language, (_in_other_language(submission, package, ending) for package in packages)
@@ -72,9 +81,7 @@ def package_equivalents(
     )
 
 
-def as_rewriting(
-    rewriting: str, changes: Iterator[Files] | tuple[Files]
-) -> Iterator[tuple[str, Files]]:
+def as_rewriting(rewriting: str, changes: Iterator[Files] | tuple[Files]) -> Rewritings:
     """Yield a rewriting with all its changes, if there are some."""
     files: dict[str, str | None] = {}
     for change in changes:
@@ -83,9 +90,18 @@ def as_rewriting(
         yield rewriting, files
 
 
-def read_text(submission: Submission, path: str) -> str:
-    """Return the text of a file of the reference."""
-    return (content(submission, path) or b"").decode("utf-8", "surrogateescape")
+def with_spans(text: str, spans: Iterable[Span]) -> str:
+    """Return a text with other texts in spans of it."""
+    for start, end, new in sorted(spans, reverse=True):
+        text = text[:start] + new + text[end:]
+    return text
+
+
+def span_with_comma(file: PythonFile, node: ast.expr | ast.keyword) -> tuple[int, int]:
+    """Return the span of an item of a list, or of an argument, with the comma after it."""
+    start, end = file.span(node)
+    comma = _COMMA.match(file.text, end)
+    return start, comma.end() if comma else end
 
 
 # --- Launch files in another language
@@ -102,7 +118,7 @@ def _in_other_language(submission: Submission, package: Package, ending: str) ->
     if before in ("", ending):
         return {}
     launch = package.launch(paths[0])
-    manifest = read_text(submission, package.path(MANIFEST))
+    manifest = text_of(submission, package.path(MANIFEST))
     is_declared = ending != ".py" or all(f">{name}<" in manifest for name in _LAUNCHING)
     if not _is_plain(launch) or not is_declared:
         return {}
@@ -115,18 +131,18 @@ def _in_other_language(submission: Submission, package: Package, ending: str) ->
     if _is_named_elsewhere(submission, path, build):
         return {}
     text = _launch_text(known, ending)
-    built = read_text(submission, build).replace(f".launch{before}", f".launch{ending}")
+    built = text_of(submission, build).replace(f".launch{before}", f".launch{ending}")
     return {path: None, f"{path.removesuffix(before)}{ending}": text, build: built}
 
 
 def _language_ending(path: str) -> str:
     """Return the ending of a launch file in a language that is written here, else nothing."""
-    ending = posixpath.splitext(path)[1]
+    ending = splitext(path)[1]
     is_known = ending in _ENDING_BY_LANGUAGE.values()
     return ending if is_known and path.endswith(f".launch{ending}") else ""
 
 
-def _launch_text(nodes: Sequence[Mapping[str, Any]], ending: str) -> str:
+def _launch_text(nodes: _NodeTables, ending: str) -> str:
     """Return a launch file that starts nodes, in the language of an ending."""
     if ending == ".xml":
         return _launch_xml(nodes)
@@ -138,28 +154,28 @@ def _launch_text(nodes: Sequence[Mapping[str, Any]], ending: str) -> str:
 
 def _is_named_elsewhere(submission: Submission, path: str, build: str) -> bool:
     """Return whether a text other than the build file names a launch file."""
-    name = posixpath.basename(path)
+    name = basename(path)
     for other in submission.whole_tree.files:
         is_text = other.endswith(_TEXTS) and other not in (path, build)
-        if is_text and name in read_text(submission, other):
+        if is_text and name in text_of(submission, other):
             return True
     return False
 
 
 def _is_plain(launch: Launch) -> bool:
     """Return whether a launch file is known to start nodes only, always the same."""
-    is_known = launch.syntax is None and not launch.unread
+    is_known = not launch.syntax and not launch.unread
     open_parts = launch.faults or launch.unknown or launch.doubts or launch.passed
     return is_known and not (open_parts or launch.values or launch.declared)
 
 
-def _node_table(node: StartedNode) -> dict[str, Any] | None:
+def _node_table(node: StartedNode) -> _Table | None:
     """Return a node as a table of a launch file; None where not all of it is known."""
     if not node.when or node.included_by or None in (node.node_name, node.namespace, node.remaps):
         return None
     if node.arguments is None or None in node.arguments or node.parameters is None:
         return None
-    table: dict[str, Any] = {"pkg": node.package, "exec": node.executable}
+    table: _Table = {"pkg": node.package, "exec": node.executable}
     if node.node_name:
         table["name"] = node.node_name
     if node.namespace:
@@ -179,12 +195,12 @@ def _node_table(node: StartedNode) -> dict[str, Any] | None:
     return table
 
 
-def _parameter_rows(node: StartedNode) -> list[dict[str, Any]] | None:
+def _parameter_rows(node: StartedNode) -> list[_Table] | None:
     """Return the parameters of a node as rows of a launch file.
 
     It is None where not all of them are plain.
     """
-    rows: list[dict[str, Any]] = []
+    rows = []
     for given in node.parameters or ():
         text = _installed_text(given.path)
         is_found = not given.path or text != given.path
@@ -204,7 +220,7 @@ def _installed_text(path: str) -> str:
     return _SHARE.sub(r"$(find-pkg-share \1)/\2", path)
 
 
-def _launch_xml(nodes: Sequence[Mapping[str, Any]]) -> str:
+def _launch_xml(nodes: _NodeTables) -> str:
     lines = ["<launch>"]
     for node in nodes:
         plain = {key: value for key, value in node.items() if not isinstance(value, list)}
@@ -221,7 +237,7 @@ def _launch_xml(nodes: Sequence[Mapping[str, Any]]) -> str:
     return "\n".join([*lines, "</launch>", ""])
 
 
-def _launch_python(nodes: Sequence[Mapping[str, Any]]) -> str:
+def _launch_python(nodes: _NodeTables) -> str:
     """Return a launch file in Python that starts nodes."""
     lines = [
         "from launch import LaunchDescription",
@@ -267,9 +283,9 @@ class _PythonCode(str):
 def _in_python(word: str) -> str:
     """Return a word of a launch file, or the code that finds a file of a package."""
     match = _FOUND.fullmatch(word)
-    if match is None:
+    if not match:
         return word
-    parts = ", ".join(repr(part) for part in match[2].split("/"))
+    parts = ", ".join(map(repr, match[2].split("/")))
     return _PythonCode(f"PathJoinSubstitution([FindPackageShare({match[1]!r}), {parts}])")
 
 
@@ -284,12 +300,12 @@ def _built_by_cmake(submission: Submission, package: Package) -> Files:
     setup = package.path(SETUP)
     manifest = package.manifest
     is_python = manifest is not None and manifest.build_type == "ament_python"
-    if not is_python or package.is_cmake or package.installation is None:
+    if not is_python or package.is_cmake or not package.installation:
         return {}
-    if _PROGRAMS.search(read_text(submission, setup)) or package.installation.unknown:
+    if _PROGRAMS.search(text_of(submission, setup)) or package.installation.unknown:
         return {}
     text = _CMAKE_TEXT.format(name=package.name, installs="\n".join(_install_commands(package)))
-    described = read_text(submission, package.path(MANIFEST)).replace("ament_python", "ament_cmake")
+    described = text_of(submission, package.path(MANIFEST)).replace("ament_python", "ament_cmake")
     depends = "<buildtool_depend>ament_cmake</buildtool_depend>"
     described = re.sub(r"(</license>)", rf"\1\n  {depends}", described, count=1)
     return {setup: None, package.path(CMAKE): text, package.path(MANIFEST): described}
@@ -301,9 +317,8 @@ def _install_commands(package: Package) -> Iterator[str]:
     for target, path in package.installed.items():
         if not target.startswith(share) or path == MANIFEST:
             continue
-        inside = target.removeprefix(share)
-        folder, name = posixpath.split(inside)
-        renamed = f" RENAME {name}" if name != posixpath.basename(path) else ""
+        folder, name = split(target.removeprefix(share))
+        renamed = f" RENAME {name}" if name != basename(path) else ""
         where = f"share/${{PROJECT_NAME}}/{folder}".rstrip("/")
         yield f"install(FILES {path} DESTINATION {where}{renamed})"
 
@@ -316,47 +331,44 @@ def python_launches(submission: Submission, package: Package) -> Iterator[tuple[
     for path in package.launch_files:
         if path.endswith(".py") and not path.startswith("test/"):
             full = package.path(path)
-            file = PythonFile(Source(full, read_text(submission, full)))
-            if file.fault is None:
+            file = PythonFile(Source(full, text_of(submission, full)))
+            if not file.fault:
                 yield full, file
 
 
 def _constant(call: ast.Call, name: str) -> str:
     """Return an argument that is written as a text; empty for any other one."""
     given = argument(call, name)
-    if given is None or not isinstance(given.value, ast.Constant):
+    if not given or not isinstance(given.value, ast.Constant):
         return ""
     return str(given.value.value)
 
 
 def _without_names(submission: Submission, package: Package) -> Files:
     """Return launch files without the names of nodes that their programs have anyway."""
-    files: dict[str, str | None] = {}
+    files = {}
     for path, file in python_launches(submission, package):
         nodes = package.launch(path.removeprefix(package.path(""))).nodes
         spans = []
         for call in file.calls("Node"):
             given = argument(call, "name")
-            name, executable = _constant(call, "name"), _constant(call, "executable")
+            name = _constant(call, "name")
+            executable = _constant(call, "executable")
             same_nodes = [
                 node for node in nodes if node.executable == executable and node.node_name == name
             ]
-            if given is None or not name or not same_nodes:
+            if not given or not name or not same_nodes:
                 continue
             if submission.workspace.code.find_name(same_nodes[0]._replace(node_name="")) == name:
-                spans.append(file.span(given))
-        text = file.text
-        for start, end in sorted(spans, reverse=True):
-            after = re.compile(r"\s*,?").match(text, end)
-            text = text[:start] + text[after.end() if after else end :]
+                spans.append((*span_with_comma(file, given), ""))
         if spans:
-            files[path] = text
+            files[path] = with_spans(file.text, spans)
     return files
 
 
 def _with_later_spawners(submission: Submission, package: Package) -> Files:
     """Return launch files whose spawners start after another node, or after some seconds."""
-    files: dict[str, str | None] = {}
+    files = {}
     for path, file in python_launches(submission, package):
         entries = []
         for call in file.calls("LaunchDescription"):
@@ -369,18 +381,16 @@ def _with_later_spawners(submission: Submission, package: Package) -> Files:
             if isinstance(started, ast.Name) and _is_node(file, started)
         ]
         first = next((started.id for started in others if started not in spawners), "")
-        text = file.text
-        for entry in sorted(spawners, key=lambda spawner: file.span(spawner)[0], reverse=True):
-            start, end = file.span(entry)
-            action = text[start:end]
+        spans = []
+        for entry in spawners:
+            action = file.segment(entry)
             later = f"_Timer(period=3.0, actions=[{action}])"
             if first:
                 later = f"_Handler(_OnStart(target_action={first}, on_start=[{action}]))"
-            text = text[:start] + later + text[end:]
-        imports = file.imports
-        if spawners and imports:
-            start, _ = file.span(imports[0])
-            files[path] = text[:start] + _IMPORTS + text[start:]
+            spans.append((*file.span(entry), later))
+        if spans and file.imports:
+            start, _ = file.span(file.imports[0])
+            files[path] = with_spans(file.text, [*spans, (start, start, _IMPORTS)])
     return files
 
 
@@ -400,14 +410,14 @@ def _is_spawner(file: PythonFile, entry: ast.expr) -> bool:
 
 
 def _replace_name(
-    submission: Submission, texts: Mapping[str, str], name: str, new: str
+    submission: Submission, texts: StringsByName, name: str, new: str
 ) -> dict[str, str]:
     """Return the files that name another file, with its new name; `texts` are changed already."""
     word = re.compile(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])")
     uses = {}
     for other in submission.whole_tree.files:
         if other.endswith(_TEXTS):
-            text = texts.get(other, read_text(submission, other))
+            text = texts.get(other, text_of(submission, other))
             if word.search(text):
                 uses[other] = word.sub(new, text)
     return uses
@@ -421,8 +431,8 @@ def _with_renamed_files(submission: Submission, package: Package, named: Collect
     files: dict[str, str | None] = {}
     texts: dict[str, str] = {}
     for path in package.tree.files:
-        name = posixpath.basename(path)
-        stem, ending = posixpath.splitext(name)
+        name = basename(path)
+        stem, ending = splitext(name)
         is_asked = any(name in text or f"/{stem}" in text for text in named)
         if not _FREE_FILES.search(path) or is_asked or "*" in name:
             continue
@@ -431,7 +441,7 @@ def _with_renamed_files(submission: Submission, package: Package, named: Collect
         if uses and old not in uses:
             texts.update(uses)
             files[old] = None
-            files[old.removesuffix(ending) + f"_2x{ending}"] = read_text(submission, old)
+            files[old.removesuffix(ending) + f"_2x{ending}"] = text_of(submission, old)
     return {**texts, **files}
 
 
@@ -439,12 +449,13 @@ def _with_renamed_system(
     submission: Submission, named: Collection[str], robot_files: Sequence[str]
 ) -> Files:
     """Return the files of a robot in which <ros2_control> has another name, if nothing names it."""
-    files: dict[str, str | None] = {}
+    files = {}
     for path in robot_files:
-        text = read_text(submission, path)
-        for match in reversed([*_SYSTEM.finditer(text)]):
+        text = text_of(submission, path)
+        spans = []
+        for match in _SYSTEM.finditer(text):
             if not any(match[2] in text_in_use for text_in_use in named):
-                start, end = match.span(2)
-                text = f"{text[:start]}{match[2]}_2x{text[end:]}"
-                files[path] = text
+                spans.append((*match.span(2), f"{match[2]}_2x"))
+        if spans:
+            files[path] = with_spans(text, spans)
     return files

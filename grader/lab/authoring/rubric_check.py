@@ -3,7 +3,6 @@
 This is what its reference does not pass, and what an edit likely forgot.
 """
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
@@ -12,6 +11,7 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.names import near
+from grader.base.patterns import on_use
 from grader.base.quantities import point
 from grader.base.text import counted, enumerated
 from grader.base.toml_file import TomlPath, one_line_each
@@ -21,6 +21,7 @@ from grader.lab.grading.grade import grade
 from grader.lab.grading.subjects import check_selectors, joints_at
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric, load_rubric, shipped_rubrics, unknown_causes
+from grader.lab.rubric.validation import Complaint
 
 _SIZES = ("size", "box", "cylinder", "capsule", "sphere", "radius", "length", "mass")
 _PLACES, _NEAR = (
@@ -28,10 +29,10 @@ _PLACES, _NEAR = (
     0.05,
 )  # metres: the origin can be meant, with any usual tolerance
 _MAX_CAUSES = 5  # criteria in the note on those that `carried` names
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+_NUMBER = on_use(r"-?\d+(?:\.\d+)?")
 # Of a sentence: with a decimal point, or before a unit. Others count something, or are names: ROS
 # 2.
-_MEASURE = re.compile(
+_MEASURE = on_use(
     r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d{1,3})?)(?!\.?\d)"
     r"(?: ?(degrees?|mm|cm|kg|percent|m|N)\b)?"
 )
@@ -56,7 +57,7 @@ class _Failures(NamedTuple):
     It has the lines that say it, whether it fails one, and how many are only undecided.
     """
 
-    lines: tuple[str, ...]
+    lines: Sequence[str]
     is_failed: bool
     undecided: int
 
@@ -68,7 +69,7 @@ def reference_failures(rubric: Rubric) -> _Failures:
 
     Criteria with one message share a line.
     """
-    assert rubric.solution is not None
+    assert rubric.solution
     unearned = grade(rubric, rubric.solution.submission).unearned
     failures = [
         (_make_path(result.criterion), result.criterion.id, result.outcome) for result in unearned
@@ -77,7 +78,7 @@ def reference_failures(rubric: Rubric) -> _Failures:
     failures.sort(key=lambda failure: failure[0][1])
     unresolved = {path[1]: (path, line) for path, line in _unresolved_selectors(rubric)}
     places = _places_by_message(failures, unresolved)
-    mistakes = [*unresolved.values()]
+    mistakes = list(unresolved.values())
     undecided = 0
     for outcome, places_of_outcome in places.items():
         names = [name for _, name in places_of_outcome]
@@ -90,7 +91,7 @@ def reference_failures(rubric: Rubric) -> _Failures:
     return _Failures(_lines(rubric, mistakes), is_failed, undecided)
 
 
-def _lines(rubric: Rubric, notes: Iterable[tuple[TomlPath, str]]) -> tuple[str, ...]:
+def _lines(rubric: Rubric, notes: Iterable[Complaint]) -> Sequence[str]:
     return tuple(
         one_line_each(rubric.path, [(rubric.find_line(path), what) for path, what in notes])
     )
@@ -102,12 +103,12 @@ def _make_path(criterion: Criterion) -> TomlPath:
 
 def _places_by_message(
     failures: Iterable[tuple[TomlPath, str, Outcome]], unresolved: Collection[int | str]
-) -> dict[Outcome, list[tuple[TomlPath, str]]]:
+) -> dict[Outcome, list[Complaint]]:
     """Return the places and criteria of failures with one status and message.
 
     Criteria whose selectors are `unresolved` are not among them.
     """
-    places: dict[Outcome, list[tuple[TomlPath, str]]] = {}
+    places: dict[Outcome, list[Complaint]] = {}
     for path, name, outcome in failures:
         if path[1] not in unresolved:
             what = Outcome(outcome.status, outcome.message)
@@ -120,7 +121,7 @@ def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]
 
     It counts where an error is carried forward.
     """
-    assert rubric.solution is not None
+    assert rubric.solution
     for criterion in rubric.criteria:
         if criterion.adjustment or criterion.bonus:
             continue
@@ -140,12 +141,12 @@ def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]
                     yield path, f"carried of {criterion.id}", result.outcome
 
 
-def _unresolved_selectors(rubric: Rubric) -> Iterator[tuple[TomlPath, str]]:
+def _unresolved_selectors(rubric: Rubric) -> Iterator[Complaint]:
     """Yield the place of each criterion whose link cannot be told, and why.
 
     It names the link by a place that not exactly one has.
     """
-    assert rubric.solution is not None
+    assert rubric.solution
     for criterion in rubric.criteria:
         if "robot" in criterion.check.examined:
             try:
@@ -160,7 +161,7 @@ def _unresolved_selectors(rubric: Rubric) -> Iterator[tuple[TomlPath, str]]:
 
 def likely_mistakes(rubric: Rubric) -> Sequence[str]:
     """Return warnings: what is valid, and hardly meant."""
-    notes: list[tuple[TomlPath, str]] = []
+    notes: list[Complaint] = []
     if _is_changed_copy(rubric):
         notes.append(
             (("id",), "the id is still that of the grader's own rubric: give this one another")
@@ -174,7 +175,7 @@ def likely_mistakes(rubric: Rubric) -> Sequence[str]:
     return _lines(rubric, notes)
 
 
-def _unknown_causes_note(rubric: Rubric) -> tuple[TomlPath, str] | None:
+def _unknown_causes_note(rubric: Rubric) -> Complaint | None:
     """Return one note on all criteria that `carried` names and that do not exist, at the first."""
     unknown = unknown_causes(rubric)
     if not unknown:
@@ -184,10 +185,9 @@ def _unknown_causes_note(rubric: Rubric) -> tuple[TomlPath, str] | None:
     # Of a criterion that was deleted, another one is often similar.
     meant = near(next(iter(names)), known) if len(names) == 1 else None
     guess = f"; did you mean {meant!r}?" if meant is not None else ""
-    listed = enumerated([*names], _MAX_CAUSES)
+    listed = enumerated(names, _MAX_CAUSES)
     what = "a criterion that does" if len(names) == 1 else "criteria that do"
-    message = f"carried names {what} not exist, which has no effect: {listed}{guess}"
-    return unknown[0][0], message
+    return unknown[0][0], f"carried names {what} not exist, which has no effect: {listed}{guess}"
 
 
 def _is_changed_copy(rubric: Rubric) -> bool:
@@ -207,13 +207,14 @@ def _warnings_about(
     rubric: Rubric, criterion: Criterion, everywhere: list[float]
 ) -> Iterator[tuple[str, str]]:
     """Yield warnings about a criterion, each with the key that it is about."""
-    numbers_given = [*_numbers_given(criterion)]
+    numbers_given = list(_numbers_given(criterion))
     if stale := _unknown_measures(criterion.title, numbers_given):
         yield "title", f"the title says {enumerated(stale)}, which `with` does not"
     known = [number * factor for number in (*everywhere, _RIGHT_ANGLE) for factor in _DERIVED]
     if stale := _unknown_measures(" ".join(criterion.feedback.values()), known):
         yield "feedback", f"the feedback says {enumerated(stale)}, which no criterion does"
-    arguments, tolerance = criterion.arguments, criterion.arguments.get("tolerance", 0)
+    arguments = criterion.arguments
+    tolerance = criterion.arguments.get("tolerance", 0)
     if tolerance >= max(_measured_sizes(arguments), default=inf):
         yield (
             "with",
@@ -226,8 +227,10 @@ def _warnings_about(
         unit = criterion.check.documentation.arguments.get(key, "")
         if "metres" in unit and tolerance < _LEAST_ANGLE:  # the limits of a slider
             continue
-        yield from (("with", message) for message in _other_angles(key, unit, [*_numbers(value)]))
-    if rubric.solution is not None and criterion.at and rubric.solution.reading.robot is not None:
+        yield from (
+            ("with", message) for message in _other_angles(key, unit, list(_numbers(value)))
+        )
+    if rubric.solution and criterion.at and rubric.solution.reading.robot is not None:
         yield from (("at", message) for message in _beyond_limits(rubric, criterion))
 
 
@@ -237,7 +240,7 @@ def _measured_sizes(arguments: Mapping[str, Any]) -> Iterator[float]:
     This is lengths, a mass, a range, or the distance of a place.
     """
     yield from (number for key in _SIZES for number in _numbers(arguments.get(key)) if number > 0)
-    ends = [*_numbers([arguments.get("lower"), arguments.get("upper")])]
+    ends = list(_numbers([arguments.get("lower"), arguments.get("upper")]))
     if len({*ends}) > 1:
         yield max(ends) - min(ends)
     if "angle" not in arguments:  # else only the orientation may be meant
@@ -317,7 +320,7 @@ def _is_like_radians(value: float) -> bool:
 
 def _beyond_limits(rubric: Rubric, criterion: Criterion) -> Iterator[str]:
     """Yield positions of joints that the reference's limits exclude, or that seem to be radians."""
-    assert rubric.solution is not None
+    assert rubric.solution
     try:
         joints = joints_at(rubric.solution.robot, criterion.at)
     except (MissingElement, NotDecided):
@@ -325,7 +328,7 @@ def _beyond_limits(rubric: Rubric, criterion: Criterion) -> Iterator[str]:
     for joint, value, unit in joints:
         if unit == "degrees":
             yield from _other_angles(f"at of {joint.name}", "in degrees", [value])
-        if joint.limit is None or joint.type == "continuous":
+        if not joint.limit or joint.type == "continuous":
             continue
         ends = (joint.limit.lower, joint.limit.upper)
         lower, upper = ends if unit == "m" else map(degrees, ends)

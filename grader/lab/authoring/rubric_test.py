@@ -15,38 +15,48 @@ from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
 from itertools import chain
 from pathlib import Path
+from posixpath import basename
 from typing import Any, NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.grouping import StringsByName
+from grader.base.patterns import on_use
 from grader.base.reuse import Memory
-from grader.base.source import Edit, Source
+from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.lab.authoring.equivalents import Equivalent, RewritingRules, equivalents, is_same_robot
 from grader.lab.authoring.file_equivalents import EVERY_NODE, file_equivalents
 from grader.lab.authoring.mutant_kinds import KindScore, draw, scores_by_kind, why_right
 from grader.lab.authoring.mutants import Mutant, MutantEdit, mutants, package_mutants
-from grader.lab.authoring.name_mutants import compared_names, name_changes
+from grader.lab.authoring.name_mutants import ComparedName, compared_names, name_changes
 from grader.lab.authoring.node_equivalents import node_equivalents
-from grader.lab.authoring.node_mutants import node_changes, type_changes
+from grader.lab.authoring.node_mutants import (
+    default_changes,
+    defaults_in,
+    goal_changes,
+    node_changes,
+    type_changes,
+)
 from grader.lab.authoring.package_equivalents import BUILT_BY_CMAKE, package_equivalents
+from grader.lab.authoring.recording_mutants import mutated_recording, recording_mutants
 from grader.lab.authoring.samples import Loss, Sample, SampleResults, tested_samples
 from grader.lab.checks.manual import MANUAL_CHECKS
+from grader.lab.checks.registry import RECORDING_CHECKS
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Report, Result
 from grader.lab.hints.search import is_worse
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric, read_rubric
-from grader.lab.submission.edited import content, with_files, with_urdf
+from grader.lab.submission.edited import content, text_of, with_files, with_urdf
 from grader.lab.submission.opening import read_submission
 from grader.lab.submission.submission import Lab, Submission
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.link_tree import JOINT_OF
-from grader.workspace.rules.names import Fact
 from grader.workspace.rules.rule_table import Family
 
-_WORD = re.compile(r"[\w@:.-]+")
+_WORD = on_use(r"[\w@:.-]+")
 _TEXTS = (
     ".py",
     ".xml",
@@ -60,8 +70,6 @@ _TEXTS = (
     ".world",
     ".sdf",
 )
-_OF_ROBOT = (".urdf", ".xacro")
-_MESHES = (".stl", ".dae", ".obj")
 
 
 # The families of names on which checks of what is launched depend.
@@ -71,9 +79,10 @@ _CONNECTING: Mapping[str, tuple[Family, ...]] = {
     "reaches": ("services",),
     "publishes_transform": ("frames",),
 }
-# Documents, pictures, and the tests of a package.
-_NO_PART_OF_LAB = re.compile(
-    r"(?i)(^|/)(tests?|docs?)/|(^|/)(license|readme|changelog|contributing)[^/]*$|\.(md|pdf|docx|png|jpe?g|gif|svg)$"
+# Documents, pictures, the tests of a package, and what rosbag2 says of a recording.
+_NO_PART_OF_LAB = on_use(
+    r"(?i)(^|/)(tests?|docs?)/|(^|/)(license|readme|changelog|contributing)[^/]*$"
+    r"|\.(md|pdf|docx|png|jpe?g|gif|svg)$|(^|/)metadata\.yaml$"
 )
 _MAX_EMPTIED = 100  # files
 _MAX_MUTANTS = 600  # by default; of more, a sample over all kinds is graded
@@ -89,7 +98,7 @@ class MutantOutcome(NamedTuple):
 
     mutant: Mutant
     fate: str  # caught, same, survived, faulty or over budget
-    failed: tuple[str, ...] = ()
+    failed: Sequence[str] = ()
     # With their messages: those that are faulty, or what is left open for lack of work.
     faults: Mapping[str, str] = {}
 
@@ -98,14 +107,14 @@ class Trial:
     """The reference of a rubric, graded. Manual checks and adjusted criteria do not count."""
 
     def __init__(self, rubric: Rubric) -> None:
-        if rubric.solution is None:
+        if not rubric.solution:
             missing = 'has no reference: add reference = "FOLDER" with a correct solution'
             raise InputError(f"the rubric {rubric.id} {missing}")
         self._memory = Memory(_MAX_KEPT)
         self.rubric = rubric
         self.reference = replace(rubric.solution.submission, memory=self._memory)
         self.report = grade(rubric, self.reference)
-        self.expected: Mapping[str, Result] = {
+        self.expected = {
             result.criterion.id: result
             for result in self.report.results
             if not result.is_adjusted and result.criterion.check.function not in MANUAL_CHECKS
@@ -130,24 +139,24 @@ class Trial:
         return names
 
     @cached_property
-    def robot_files(self) -> tuple[str, ...]:
+    def robot_files(self) -> Sequence[str]:
         """The URDF and the xacro files that it includes."""
         if not isinstance(self.reference.urdf, Read):
             return ()
         paths = [self.reference.urdf.path]
         others = [
-            path for path in self.reference.whole_tree.files if path.lower().endswith(_OF_ROBOT)
+            path
+            for path in self.reference.whole_tree.files
+            if path.lower().endswith((".urdf", ".xacro"))
         ]
         for path in paths:  # grows
             text = self.text(path)
-            paths += [
-                other for other in others if other not in paths and other.rpartition("/")[2] in text
-            ]
-        return tuple(paths)
+            paths += [other for other in others if other not in paths and basename(other) in text]
+        return paths
 
     def text(self, path: str) -> str:
         """Return the text of a file of the reference."""
-        return (content(self.reference, path) or b"").decode("utf-8", "surrogateescape")
+        return text_of(self.reference, path)
 
     def unexamined(self) -> tuple[list[str], int]:
         """Return the files that no criterion needs, and how many were tried.
@@ -189,13 +198,15 @@ class Trial:
         ]
         for path in self.robot_files:
             yield from mutants(self.text(path), path, hidden)
-        if self.reference.package is not None:
+        if self.reference.package:
             yield from self._mutants_of_packages(self.reference.package)
+        if any(criterion.check.name in RECORDING_CHECKS for criterion in self.tested):
+            yield from recording_mutants(self.reference)
 
     def _mutants_of_packages(self, package: Package) -> Iterator[Mutant]:
         """Yield the mutants of the packages, the main one first, that a criterion may look at."""
         robot = self.reference.robot
-        links = [link.name for link in robot.links] if robot is not None else []
+        links = [link.name for link in robot.links] if robot else []
         packages = [
             lab_package
             for lab_package in self.reference.lab_packages.values()
@@ -206,26 +217,49 @@ class Trial:
             made = package_mutants(one, links, self.text, self._name_changes, prefix=prefix)
             yield from filter(self._is_looked_at, made)
 
-    def _name_changes(self, source: Source, label: str) -> Iterable[MutantEdit]:
+    def _name_changes(self, source: Source) -> Iterable[MutantEdit]:
         """Return the changes of names and values in a file, if a criterion compares them."""
         is_value_asked = any(criterion.check.name == "parameter_is" for criterion in self.tested)
+        changes = [
+            goal_changes(source, self._goals_asked),
+            default_changes(source, self._defaults),
+        ]
         if self._families or is_value_asked:
-            names = name_changes(source, label, self._names, self._families)
-            nodes = node_changes(self.reference, source, label, self._families)
-            return chain(names, nodes, type_changes(source, label, self._typed_topics))
-        return ()
+            changes.append(name_changes(source, self._names, self._families))
+            changes.append(node_changes(self.reference, source, self._families))
+            changes.append(type_changes(source, self._typed_topics))
+        return chain.from_iterable(changes)
+
+    @cached_property
+    def _goals_asked(self) -> list[str]:
+        """What is asked of the goals of actions, by the arguments of serves_action."""
+        asked = set()
+        for criterion in self.tested:
+            if criterion.check.name == "serves_action":
+                asked |= {name for name, value in criterion.arguments.items() if value is True}
+        return sorted(asked)
+
+    @cached_property
+    def _defaults(self) -> StringsByName:
+        """The defaults of the parameters that code has to use, as code has them."""
+        asked = {
+            criterion.arguments["parameter"]
+            for criterion in self.tested
+            if criterion.check.name == "uses_parameter"
+        }
+        return defaults_in(self.reference.workspace.code.nodes, asked)
 
     @cached_property
     def _typed_topics(self) -> frozenset[str]:
         """The last words of the topics whose types are asked for."""
         return frozenset(
-            criterion.arguments["topic"].rpartition("/")[2]
+            basename(criterion.arguments["topic"])
             for criterion in self.tested
             if criterion.check.name == "topic_has_type"
         )
 
     @cached_property
-    def _families(self) -> tuple[Family, ...]:
+    def _families(self) -> Sequence[Family]:
         """The families of names that have to agree, or by which something connects."""
         families: dict[Family, None] = {}
         for criterion in self.tested:
@@ -235,8 +269,8 @@ class Trial:
         return tuple(families)
 
     @cached_property
-    def _names(self) -> list[tuple[Fact, Edit]]:
-        return [*compared_names(self.reference.renewed(), self._families)]
+    def _names(self) -> list[ComparedName]:
+        return list(compared_names(self.reference.renewed(), self._families))
 
     def _is_looked_at(self, mutant: Mutant) -> bool:
         """Return whether a criterion may look at a mutant of a package.
@@ -246,7 +280,7 @@ class Trial:
         subjects = {criterion.check.subject for criterion in self.tested}
         if "package" in subjects:
             return True
-        if mutant.path.lower().endswith(_MESHES):
+        if mutant.path.lower().endswith((".stl", ".dae", ".obj")):
             return any(criterion.check.name == "shows_mesh" for criterion in self.tested)
         return "submission" in subjects and mutant.path.endswith(MANIFEST)
 
@@ -260,6 +294,8 @@ class Trial:
             return with_urdf(self.reference, {mutant.path: data})
         renamed = {mutant.renamed: content(self.reference, mutant.path)} if mutant.renamed else {}
         files = {mutant.path: None if mutant.is_deleted else data, **renamed}
+        if mutant.mutation.startswith("record"):
+            files = mutated_recording(self.reference, mutant)
         try:
             return replace(with_files(self.reference, files), memory=self._memory)
         except InputError:
@@ -276,7 +312,7 @@ class Trial:
             for name, result in self.expected.items()
             if not is_of_robot or result.criterion.check.subject != "package"
         ]
-        return [*decide(self.rubric, submission, names)]
+        return list(decide(self.rubric, submission, names))
 
     def _is_of_robot(self, mutant: Mutant) -> bool:
         return mutant.path in self.robot_files and not mutant.is_deleted
@@ -288,7 +324,7 @@ class Trial:
     def outcome(self, mutant: Mutant) -> MutantOutcome:
         """Grade a mutant."""
         submission = self.submission(mutant)
-        if submission is None:
+        if not submission:
             return MutantOutcome(mutant, "caught")
         results = self.results(mutant, submission)
         lost = [result for result in results if self.is_lost(result)]
@@ -297,7 +333,8 @@ class Trial:
         if faults:
             fate = "faulty"
         elif submission.is_over_budget and len(undecided) == len(lost) > 0:
-            fate, faults = "over budget", undecided
+            fate = "over budget"
+            faults = undecided
         elif lost:
             fate = "caught"
         elif self._is_of_robot(mutant) and is_same_robot(
@@ -313,7 +350,8 @@ class Trial:
         urdf = self.reference.urdf
         if isinstance(urdf, Read) and urdf.loaded.verdict == "clean":
             yield from self._robot_equivalents(urdf)
-        names, reference = set(_names_in(self.rubric)), self.reference.renewed()
+        names = set(_names_in(self.rubric))
+        reference = self.reference.renewed()
         rewritten = package_equivalents(reference, names, self.robot_files)
         of_nodes = node_equivalents(reference, names)
         for rewriting, texts in chain(file_equivalents(reference), rewritten, of_nodes):
@@ -322,7 +360,7 @@ class Trial:
     def _file_equivalent(self, rewriting: str, texts: Mapping[str, str | None]) -> Loss:
         """Return what other texts of files lose; None for a file that is not there any more."""
         names = [one.id for one in self.tested if not _is_of_writing(one, rewriting)]
-        files: dict[str, bytes | None] = {}
+        files = {}
         diffs = []
         for path, text in texts.items():
             files[path] = None if text is None else text.encode("utf-8", "surrogateescape")
@@ -346,7 +384,7 @@ class Trial:
                 diff = _text_diff(self.robot_files[0], equivalent.before, equivalent.text)
             yield Loss(equivalent.rewriting, lost, diff)
 
-    def _lost(self, submission: Submission, names: Collection[str]) -> Mapping[str, str]:
+    def _lost(self, submission: Submission, names: Collection[str]) -> StringsByName:
         """Return the criteria that lose points, with their messages."""
         results = decide(self.rubric, submission, names)
         return {
@@ -380,7 +418,8 @@ def _messages(results: Iterable[Result], status: str) -> dict[str, str]:
 
 def _is_of_writing(criterion: Criterion, rewriting: str) -> bool:
     """Return whether a criterion asks for what a rewriting of files changes."""
-    check, arguments = criterion.check.name, criterion.arguments
+    check = criterion.check.name
+    arguments = criterion.arguments
     if check == "entry_is":
         # A path names one of several nodes, or an entry of a file that is written anew.
         return rewriting == EVERY_NODE or "file" in arguments
@@ -397,9 +436,9 @@ def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Sub
     A URDF that becomes xacro is graded on its own.
     """
     data = equivalent.text.encode()
-    if not equivalent.is_xacro or (urdf.is_expanded and urdf.as_it_stands is None):
+    if not equivalent.is_xacro or (urdf.is_expanded and not urdf.as_it_stands):
         return with_urdf(reference, {urdf.path: data})
-    name = urdf.path.rpartition("/")[2]
+    name = basename(urdf.path)
     path = f"{name.removesuffix('.xacro')}.xacro"
     lab = Lab(path, distro=reference.distro)
     return read_submission(data, identity=reference.id, path=path, lab=lab)
@@ -458,19 +497,19 @@ class RubricTest(NamedTuple):
     tried: int  # mutants that were graded
     caught: int  # mutants that lose points
     same: int  # mutants that are the same robot
-    survivors: tuple[_Survivor, ...]  # mutants that lose nothing
-    ignored: tuple[_Survivor, ...]  # mutants that lose nothing, and that the rubric ignores
-    unused: tuple[str, ...]  # patterns of [[test.ignore]] that match no mutant
-    idle: tuple[str, ...]  # criteria that no mutant fails
-    unexamined: tuple[str, ...]  # files that no criterion looks at
+    survivors: Sequence[_Survivor]  # mutants that lose nothing
+    ignored: Sequence[_Survivor]  # mutants that lose nothing, and that the rubric ignores
+    unused: Sequence[str]  # patterns of [[test.ignore]] that match no mutant
+    idle: Sequence[str]  # criteria that no mutant fails
+    unexamined: Sequence[str]  # files that no criterion looks at
     files: int  # how many were tried
-    faults: tuple[Loss, ...]  # mutants on which a check is faulty
+    faults: Sequence[Loss]  # mutants on which a check is faulty
     # mutants that lose nothing but what takes more work than one submission may use
-    over_budget: tuple[Loss, ...]
-    equivalents: tuple[str, ...]  # the rewritings that were tried
-    losses: tuple[Loss, ...]  # equivalents that lose points
+    over_budget: Sequence[Loss]
+    equivalents: Sequence[str]  # the rewritings that were tried
+    losses: Sequence[Loss]  # equivalents that lose points
     samples: SampleResults | None = None  # None where no folder was given
-    kinds: tuple[KindScore, ...] = ()  # without mutants that are ignored or right
+    kinds: Sequence[KindScore] = ()  # without mutants that are ignored or right
     # by Ctrl-C: then the rest of the mutants, the equivalents and the files are not tried
     is_interrupted: bool = False
 
@@ -486,12 +525,12 @@ class RubricTest(NamedTuple):
         return Decimal(100)
 
     @property
-    def lost(self) -> tuple[str, ...]:
+    def lost(self) -> Sequence[str]:
         """The criteria that the reference does not pass.
 
         Extra credit and criteria for manual grading are not among them.
         """
-        return tuple(result.criterion.id for result in self.reference.unearned)
+        return [result.criterion.id for result in self.reference.unearned]
 
     @property
     def is_faulty(self) -> bool:
@@ -501,9 +540,7 @@ class RubricTest(NamedTuple):
     @property
     def is_sound(self) -> bool:
         """Return whether no correct robot loses anything, and each sample what it should."""
-        return not (
-            self.lost or self.losses or (self.samples is not None and self.samples.different)
-        )
+        return not (self.lost or self.losses or (self.samples and self.samples.different))
 
 
 def run_rubric_test(
@@ -523,14 +560,14 @@ def run_rubric_test(
     sample that the seed draws.
     """
     trial = Trial(rubric)
-    every = [*trial.mutants()]
+    every = list(trial.mutants())
     chosen = draw(every, most, seed)
     total = len(chosen) + len(samples or ())
     if samples is not None:
         of_samples = tested_samples(rubric, samples, lambda done: progress(done, total, ()))
     else:
         of_samples = None
-    outcomes: list[MutantOutcome] = []
+    outcomes = []
     rest = None
     try:
         for outcome in grade_all(chosen):
@@ -541,7 +578,7 @@ def run_rubric_test(
                     (graded.mutant.mutation, graded.fate) for graded in outcomes
                 )
                 progress(len(samples or ()) + len(outcomes), total, scores)
-        rest = _Rest([*trial.equivalents()], *trial.unexamined())
+        rest = _Rest(list(trial.equivalents()), *trial.unexamined())
     except KeyboardInterrupt:
         if not outcomes:
             raise
@@ -550,7 +587,7 @@ def run_rubric_test(
 
 def mutant_outcomes(data: bytes, path: str, mutants: Sequence[Mutant]) -> list[MutantOutcome]:
     """Grade mutants of the reference of the rubric in a file."""
-    return [*map(_trial_from(data, path).outcome, mutants)]
+    return list(map(_trial_from(data, path).outcome, mutants))
 
 
 @lru_cache(maxsize=1)
@@ -572,11 +609,11 @@ def _counted(
     places = {mutant: place for place, mutant in enumerate(every)}
     graded = sorted(outcomes, key=lambda outcome: places[outcome.mutant])
     fates = Counter(outcome.fate for outcome in graded)
-    survivors: list[_Survivor] = []
-    ignored: list[_Survivor] = []
+    survivors = []
+    ignored = []
     unjudged: dict[str, list[Loss]] = {"faulty": [], "over budget": []}
     failed: set[str] = set()
-    scored: list[tuple[str, str]] = []
+    scored = []
     for outcome in graded:
         mutant = outcome.mutant
         failed.update(outcome.failed)
@@ -594,7 +631,7 @@ def _counted(
                 Loss(mutant.id, outcome.faults, _mutant_diff(trial, mutant))
             )
     idle = [criterion.id for criterion in trial.tested if criterion.id not in failed]
-    is_interrupted = rest is None
+    is_interrupted = not rest
     equivalents, unexamined, files = rest or _Rest([], [], 0)
     names = [loss.name for loss in equivalents]
     losses = [loss for loss in equivalents if loss.criteria]
@@ -604,18 +641,18 @@ def _counted(
         tried=len(graded),
         caught=fates["caught"],
         same=fates["same"],
-        survivors=tuple(survivors),
-        ignored=tuple(ignored),
+        survivors=survivors,
+        ignored=ignored,
         unused=tuple(_unused_patterns(trial.rubric, every)),
-        idle=() if is_interrupted else tuple(idle),
-        unexamined=tuple(unexamined),
+        idle=() if is_interrupted else idle,
+        unexamined=unexamined,
         files=files,
-        faults=tuple(unjudged["faulty"]),
-        over_budget=tuple(unjudged["over budget"]),
-        equivalents=tuple(names),
-        losses=tuple(losses),
+        faults=unjudged["faulty"],
+        over_budget=unjudged["over budget"],
+        equivalents=names,
+        losses=losses,
         samples=samples,
-        kinds=tuple(scores_by_kind(scored)),
+        kinds=scores_by_kind(scored),
         is_interrupted=is_interrupted,
     )
 
@@ -646,6 +683,8 @@ def _mutant_diff(trial: Trial, mutant: Mutant) -> str:
         if mutant.renamed:
             return f"rename {mutant.path} to {mutant.renamed}"
         return f"delete {mutant.path}"
+    if mutant.mutation.startswith("record"):
+        return mutant.id
     text = trial.text(mutant.path)
     return _text_diff(mutant.path, text, mutant.applied(text))
 

@@ -1,11 +1,12 @@
 """Sample submissions: folders with an expected.toml, which says what their report must be."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.grouping import StringsByName
 from grader.base.names import did_you_mean
 from grader.base.text import printable_path
 from grader.base.toml_file import KeyTable, TomlRowReader, raise_complaints, read_toml
@@ -39,7 +40,7 @@ class Loss(NamedTuple):
     """A submission with criteria that are not what they must be, each with its message."""
 
     name: str
-    criteria: Mapping[str, str]
+    criteria: StringsByName
     diff: str = ""
 
 
@@ -51,7 +52,7 @@ class SampleResults(NamedTuple):
 
     tried: int
     skipped: int
-    different: tuple[Loss, ...] = ()
+    different: Sequence[Loss] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,11 +64,10 @@ class Sample:
     path: str = ""  # of the submission in it; default: the folder
     rubric: str = ""  # the id of the only rubric that it is for
     verdict: str = ""  # that of ROS 2, if it matters
-    lost: tuple[str, ...] = ()  # criteria that lose their points
-    carried: tuple[
-        str, ...
-    ] = ()  # criteria that keep them, because an earlier mistake makes them fail
-    pending: tuple[str, ...] = ()  # criteria that need manual grading
+    lost: Sequence[str] = ()  # criteria that lose their points
+    # criteria that keep them, because an earlier mistake makes them fail
+    carried: Sequence[str] = ()
+    pending: Sequence[str] = ()  # criteria that need manual grading
 
 
 def read_samples(folder: Path) -> list[Sample]:
@@ -98,13 +98,13 @@ def tested_samples(
 ) -> SampleResults:
     """Return which samples of a rubric differ from what they expect."""
     own_samples = [sample for sample in samples if sample.rubric in ("", rubric.id)]
-    different: list[Loss] = []
+    different = []
     for done, sample in enumerate(own_samples):
         show(done)
         differences = dict(_differences(sample, rubric))
         if differences:
             different.append(Loss(sample.folder.name, differences))
-    return SampleResults(len(own_samples), len(samples) - len(own_samples), tuple(different))
+    return SampleResults(len(own_samples), len(samples) - len(own_samples), different)
 
 
 def _differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
@@ -131,7 +131,7 @@ def _differences_of_criteria(
     for kind, words in _WORDS.items():
         for name in getattr(sample, kind):
             expected[name] = words
-    known = {criterion.id: criterion.adjustment is None for criterion in rubric.criteria}
+    known = {criterion.id: not criterion.adjustment for criterion in rubric.criteria}
     for name in expected:
         if name not in known:
             yield name, f"the rubric has no such criterion{did_you_mean(name, known)}"

@@ -1,10 +1,10 @@
 """The element tree of a URDF, to rewrite a robot: poses, frames and joints."""
 
-import re
 from collections.abc import Iterable, Iterator
 
 from lxml import etree
 
+from grader.base.patterns import on_use
 from grader.base.transforms import (
     IDENTITY,
     Transform,
@@ -17,7 +17,7 @@ from grader.ros.xml.elements import FOREIGN
 from grader.ros.xml.parsing import Element
 
 XACRO = "http://www.ros.org/wiki/xacro"
-_FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
+_FOUND = on_use(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
 
 
 def copied(root: Element) -> Element:
@@ -64,9 +64,9 @@ def attribute_numbers(
     return [float(piece) for piece in text.split()]
 
 
-def read_vector(element: Element | None, attribute: str, default: str = "0 0 0") -> Vector:
-    """Return the three numbers of an attribute."""
-    x, y, z = attribute_numbers(element, attribute, default)
+def read_vector(element: Element | None, default: str = "0 0 0") -> Vector:
+    """Return the three numbers of `xyz`."""
+    x, y, z = attribute_numbers(element, "xyz", default)
     return x, y, z
 
 
@@ -126,7 +126,7 @@ def move_frame(tree: Element, link: Element, change: Transform) -> None:
     set_pose(held, pose(held) @ change)
     axis = held.find("axis")
     if axis is not None:
-        axis.set("xyz", attribute_text(back.rotate(read_vector(axis, "xyz"))))
+        axis.set("xyz", attribute_text(back.rotate(read_vector(axis))))
     elif held.get("type") != "fixed":
         etree.SubElement(held, "axis", {"xyz": attribute_text(back.rotate((1.0, 0.0, 0.0)))})
     for element in link.iterchildren("visual", "collision", "inertial"):
@@ -165,7 +165,9 @@ def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bo
 
     With `is_first`, the upper half keeps the name.
     """
-    middle, parent, child = fresh(tree, "link"), end(joint, "parent"), end(joint, "child")
+    middle = fresh(tree, "link")
+    parent = end(joint, "parent")
+    child = end(joint, "child")
     etree.SubElement(tree, "link", {"name": middle})
     second = first.inverse() @ pose(joint)
     if is_first:

@@ -169,7 +169,7 @@ def shows_colour(
             largest of all.
     """
     visual = main_visual(robot, link, shape)
-    if visual.material is None or visual.material.texture:
+    if not visual.material or visual.material.texture:
         return _judge_colourless(link, visual)
     actual = visual.material.rgba[: len(colour)]
     fine = all_within(actual, colour, tolerance)
@@ -202,7 +202,7 @@ def shows_grey(
         tolerance: How far red, green and blue may be apart, on the scale from 0 to 1.
     """
     visual = main_visual(robot, link)
-    if visual.material is None or visual.material.texture:
+    if not visual.material or visual.material.texture:
         return _judge_colourless(link, visual)
     actual = visual.material.rgba[:3]
     message = f"{link!r} is shown in rgb {point(actual)}"
@@ -212,7 +212,8 @@ def shows_grey(
         message += ", which is not grey; red, green and blue should be equal"
     elif not is_light:
         message += f"; each should be at least {at_least:g}"
-    invisible, at = _why_invisible(visual.material), place(visual.material.location, "rgba")
+    invisible = _why_invisible(visual.material)
+    at = place(visual.material.location, "rgba")
     return judged(
         is_grey and is_light and not invisible,
         message + invisible,
@@ -247,7 +248,8 @@ def _visuals_of_kind(
     pairs = ((visual, visual.geometry) for visual in visuals(robot, link))
     visuals_of_kind = [(visual, shape) for visual, shape in pairs if isinstance(shape, kind)]
     if not visuals_of_kind:
-        other, wanted = main_visual(robot, link).geometry, kind.__name__.lower()
+        other = main_visual(robot, link).geometry
+        wanted = kind.__name__.lower()
         message = f"{link!r} shows {shape_name(other)}; it should show a {wanted}"
         raise MissingElement(wanted, link, message=message, location=place(other.location))
     return visuals_of_kind
@@ -303,7 +305,7 @@ def _why_invisible(material: Material) -> str:
 
 
 def _judge_colourless(link: str, visual: Visual) -> Outcome:
-    if visual.material is not None:
+    if visual.material:
         raise NotDecided(
             f"{link!r} is shown with a texture, which the grader does not open",
             "textures are not opened",

@@ -12,6 +12,8 @@ from keyword import iskeyword, kwlist
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings, StringsByName
+from grader.base.records import Named
 from grader.base.toml_types import TomlType, toml_type
 from grader.lab.checks.outcome import MISSING, SLIP, WRONG, Outcome
 
@@ -37,21 +39,23 @@ CAUSES = {
 }
 _SECTION = r"(?m)^(Args|Arguments|Examples?|Notes?|Raises|Returns):\s*$"
 _ARGUMENT = r"^\*{0,2}(\w+)(?:\s*\([^)]*\))?:\s+"
+_Given = Mapping[str, Any]  # the arguments of a check
+_Function = Callable[..., Outcome]
 
 
-def _breaks_under_none(arguments: Mapping[str, Any]) -> Collection[str]:
+def _breaks_under_none(arguments: _Given) -> Collection[str]:
     """Break under no equivalent, as most checks do: they are about behaviour."""
     del arguments
     return ()
 
 
-def everything(arguments: Mapping[str, Any]) -> Collection[str]:
+def everything(arguments: _Given) -> Collection[str]:
     """Break under every equivalent: the check is about the text."""
     del arguments
     return EQUIVALENTS
 
 
-class About(NamedTuple):
+class About(Named):
     """What a check declares, in the table `ABOUT` of its module by the name of its function.
 
     `looks_at` are the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) or the tags
@@ -64,10 +68,10 @@ class About(NamedTuple):
     failures beside `CAUSES`, each with its meaning, which the feedback of a rubric may name.
     """
 
-    looks_at: tuple[str, ...] = ()
+    looks_at: Strings = ()
     breaks_under: _BreaksUnder = _breaks_under_none
     picture: Literal["", "outline", "wheel", "frame"] = ""
-    function_for: Callable[[Mapping[str, Any]], Callable[..., Outcome]] | None = None
+    function_for: Callable[[_Given], _Function] | None = None
     is_of_writing: bool = False
     causes: Mapping[str, str] = {}
 
@@ -88,10 +92,10 @@ LINK_ARGUMENTS = (
 
 
 Subject = Literal["urdf", "robot", "package", "submission", "reference"]
-_SUBJECTS: tuple[Subject, ...] = get_args(Subject)
+_SUBJECTS = get_args(Subject)
 
 
-class _CheckParameter(NamedTuple):
+class _CheckParameter(Named):
     """One argument of a check: its annotation, and its default if it has one."""
 
     name: str
@@ -112,13 +116,13 @@ class Check(NamedTuple):
     """A check, as a rubric names it."""
 
     name: str
-    function: Callable[..., Outcome]
+    function: _Function
     examined: tuple[Subject, ...]  # the objects that it gets, the main one first
     parameters: Mapping[str, _CheckParameter]  # what the rubric's `with` table gives
     distribution: str = ""  # the installed package that it comes from; empty for the grader's own
     about: About = About()  # what its module declares of it
 
-    def for_arguments(self, arguments: Mapping[str, Any]) -> "Check":
+    def for_arguments(self, arguments: _Given) -> "Check":
         """Return the check as it is called with these arguments.
 
         They may decide what is examined.
@@ -129,10 +133,10 @@ class Check(NamedTuple):
             function = self.function
         if function is self.function:
             return self
-        parameters = [*inspect.signature(function).parameters.values()]
+        parameters = list(inspect.signature(function).parameters.values())
         return self._replace(function=function, examined=_examined(parameters))
 
-    def outcome(self, examined: Iterable[object], arguments: Mapping[str, Any]) -> Outcome:
+    def outcome(self, examined: Iterable[object], arguments: _Given) -> Outcome:
         """Return what it finds in the objects that it examines, with the arguments of a rubric."""
         if not _KEYWORDS.isdisjoint(arguments):
             arguments = {
@@ -147,7 +151,12 @@ class Check(NamedTuple):
         return self.examined[0]
 
     @property
-    def causes(self) -> Mapping[str, str]:
+    def is_of_robot(self) -> bool:
+        """Whether it examines a robot, as it is written or as ROS 2 reads it."""
+        return self.subject in ("urdf", "robot")
+
+    @property
+    def causes(self) -> StringsByName:
         """The causes of its failures, each with its meaning."""
         return {**CAUSES, **self.about.causes}
 
@@ -157,7 +166,7 @@ class Check(NamedTuple):
         return documentation(self.function)
 
 
-def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
+def describe(function: _Function, distribution: str = "") -> Check:
     """Return the check that a function is.
 
     Its signature is the schema of the rubric's `with` table.
@@ -177,7 +186,8 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     also = list(takewhile(_is_subject, rest))
     parameters = {}
     for name, default in ((parameter.name, parameter.default) for parameter in rest[len(also) :]):
-        is_required, key = default is inspect.Parameter.empty, _key(name)
+        is_required = default is inspect.Parameter.empty
+        key = _key(name)
         parameters[key] = _CheckParameter(
             key, hints[name], is_required, None if is_required else default
         )
@@ -212,15 +222,15 @@ def _is_subject(parameter: inspect.Parameter) -> bool:
     return parameter.kind is parameter.POSITIONAL_OR_KEYWORD and parameter.name in _SUBJECTS
 
 
-class Documentation(NamedTuple):
+class Documentation(Named):
     """The parts of a docstring.
 
     They are the paragraphs before its first section, a fact first, and the meaning of each
     argument.
     """
 
-    paragraphs: tuple[str, ...]
-    arguments: Mapping[str, str]
+    paragraphs: Strings
+    arguments: StringsByName
 
     @property
     def fact(self) -> str:

@@ -33,7 +33,7 @@ ABOUT = {
     "collides_as": About(("collision",)),
 }
 
-_ZERO: Vector = (0.0, 0.0, 0.0)
+_ZERO = (0.0, 0.0, 0.0)
 
 
 def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
@@ -119,19 +119,19 @@ def collides_as(
     def off(collision: Collision) -> ShapeDifference | None:
         other = PlacedShape(collision.geometry, collision.origin.placed_in())
         mismatch = placed.mismatch(other, tolerance + SLACK, turned=rpy is not None)
-        if mismatch is None or xyz is not None:
+        if not mismatch or xyz is not None:
             return mismatch
         return mismatch._replace(apart=0.0)
 
     solid = _solid_collisions(robot, link, what)
     fitting = next((one for one in solid if _fits(off(one), tolerance)), None)
-    if fitting is None:
+    if not fitting:
         nearest = min(solid, key=lambda one: _rank_mismatch(off(one)))
         return _fail_with_nearest(
             f"no collision shape of {link!r} is {what}", nearest, off(nearest), tolerance
         )
     other = next((one for one in solid if one is not fitting), None)
-    if only and other is not None:
+    if only and other:
         message = (
             f"{link!r} has another collision shape, {_describe_shape(other)}; it should have "
             f"only {what}"
@@ -173,7 +173,7 @@ def _place_text(xyz: Vector | None, rpy: Vector | None, relative_to: str) -> str
     return text
 
 
-def _solid_collisions(robot: Configuration, link: str, expected: str) -> tuple[Collision, ...]:
+def _solid_collisions(robot: Configuration, link: str, expected: str) -> Sequence[Collision]:
     """Return the collision shapes of a link that have a size.
 
     Raise MissingElement if there is none.
@@ -251,7 +251,7 @@ def _fail_with_nearest(
     Its location is the place to look at.
     """
     message += f"; the nearest is {_describe_shape(nearest)}"
-    if off is None:
+    if not off:
         return failed(message, nearest.geometry.location or nearest.location)
     differences = [
         (f"{in_millimetres(off.apart)} away", off.apart, nearest.origin.location, "xyz"),

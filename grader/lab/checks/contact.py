@@ -7,7 +7,7 @@ from grader.base.errors import NotDecided
 from grader.base.quantities import SLACK, in_millimetres, point, within
 from grader.base.source import place
 from grader.base.toml_types import NonNegative
-from grader.base.transforms import X_AXIS, Z_AXIS, Vector
+from grader.base.transforms import X_AXIS, Z_AXIS
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, difference, judged
 from grader.lab.checks.visuals import ShapeName, main_visual
@@ -24,7 +24,7 @@ ABOUT = {
     "clear_of": About(picture="outline"),
 }
 
-_LEFT: Vector = (0.0, 1.0, 0.0)
+_LEFT = (0.0, 1.0, 0.0)
 _MAX_PAIRS = 2_000
 
 
@@ -42,8 +42,7 @@ def stands_on(
         shape: Which of several visuals of the lower link counts: the largest of this shape or,
             without one, of all.
     """
-    support = main_visual(robot, on, shape)
-    below = placed(robot, on, support, on)
+    below = placed(robot, on, main_visual(robot, on, shape), on)
     above = [placed(robot, link, visual, on) for visual in visuals(robot, link)]
     bottom = min(shape.extent(Z_AXIS)[0] for shape in above)
     _, top = below.extent(Z_AXIS)
@@ -79,8 +78,9 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
     others = [placed(robot, of, visual, of) for visual in visuals(robot, of)]
     if len(own_visuals) * len(others) > _MAX_PAIRS:
         raise NotDecided(f"{link!r} and {of!r} show too many shapes to compare", "too many shapes")
-    deepest, culprit = 0.0, own_visuals[0][0]
-    unknown: Mesh | None = None
+    deepest = 0.0
+    culprit = own_visuals[0][0]
+    unknown = None
     for (visual, pose), (geometry, other) in product(own_visuals, others):
         if isinstance(visual.geometry, Mesh):
             unknown = visual.geometry
@@ -90,7 +90,7 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
             depth = penetration(visual.geometry, pose, geometry, other, allowed=tolerance)
             deepest, culprit = max((deepest, culprit), (depth, visual), key=itemgetter(0))
     fine = deepest <= tolerance
-    if fine and unknown is not None:
+    if fine and unknown:
         raise UnknownShape(unknown)
     if fine:
         message = f"{link!r} does not overlap {of!r}"

@@ -49,8 +49,8 @@ def stands_level(
     """
     standing = StandingRobot(robot, on, base)
     rest = standing.rest
-    faults: list[RobotFault] = []
-    hanging = [*_find_hanging(standing, robot, on, tolerance)]
+    faults = []
+    hanging = list(_find_hanging(standing, robot, on, tolerance))
     others = [link for link in standing.touching if link not in on]
     if rest.has_fallen:
         faults.append(RobotFault("it tips over"))
@@ -117,8 +117,7 @@ def drives_straight(
     if not faults:
         _refuse_crossed(driven)
         faults = driven.find_faults_ahead(forward, angle, turn)
-    fine = RobotFault("", 0.0, angle, "deg")
-    return _judge(standing, faults, DRIVES_AHEAD, fine, by_mass=False)
+    return _judge(standing, faults, DRIVES_AHEAD, RobotFault("", 0.0, angle, "deg"), by_mass=False)
 
 
 def turns_in_place(

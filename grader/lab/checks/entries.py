@@ -1,13 +1,14 @@
 """The check of the entries of a file: of the expanded robot, of YAML, SDF, SRDF and package.xml."""
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
 from typing import Annotated, Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.grouping import as_list
 from grader.base.names import similar_there
 from grader.base.pairing import most_pairs
+from grader.base.patterns import on_use
 from grader.base.source import LazyLocation
 from grader.base.text import MAX_NAMED, enumerated, first_lines, quoted
 from grader.base.toml_types import Constraint, Content, NonNegative, Scalar
@@ -31,16 +32,19 @@ from grader.ros.xml.elements import matches_value, read_name, readable, xml_text
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import numbers_in
 
-_ROBOT, _IN_ROBOT = "robot", "directly in <robot>"
-_READ_BY_ROS = ("link", "joint", "material")
+_ROBOT = "robot"
+_IN_ROBOT = "directly in <robot>"
 _PARTS = ("inertial", "visual", "collision")  # of a link
 _IDENTIFYING = ("@name", "@reference", "@filename", "@type")  # the first that a rubric gives
 _USES = ("@world", "@controllers", "@bridge")  # of files
+_GIVEN = "@parameters/"  # before the name of a node
 _LIBRARY = "@filename"  # of a plugin
-_LIBRARY_FILE = re.compile(r"lib(.+)\.so")
+_LIBRARY_FILE = on_use(r"lib(.+)\.so")
 _TOLERANCE = 1e-6  # of numbers, where a rubric gives none
 _SLACK = 1e-12  # a tolerance includes its end
 _Path = Annotated[str, Constraint("a path such as gazebo[@reference='lidar']/sensor", is_path)]
+_Entries = Sequence[TreeEntry]
+_Scalars = list[Scalar] | None
 
 
 def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
@@ -48,7 +52,9 @@ def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
     frames = ("fixed joints split", "frames moved")
     steps = split_path(arguments.get("at") or "", is_xml=True)
     is_read = (
-        arguments.get("file", _ROBOT) == _ROBOT and bool(steps) and steps[0].name in _READ_BY_ROS
+        arguments.get("file", _ROBOT) == _ROBOT
+        and bool(steps)
+        and steps[0].name in ("link", "joint", "material")
     )
     return (*frames, "links renamed", "joints renamed", MIMIC_TURNED) if is_read else ()
 
@@ -60,8 +66,8 @@ def entry_is(
     file: str = _ROBOT,
     at: _Path = "",
     value: Content | None = None,
-    one_of: list[Scalar] | None = None,
-    has: list[Scalar] | None = None,
+    one_of: _Scalars = None,
+    has: _Scalars = None,
     values: Mapping[str, Content] | None = None,
     tolerance: NonNegative = _TOLERANCE,
     only: bool = False,
@@ -77,7 +83,8 @@ def entry_is(
     Args:
         file: The end of the path of a file in the package, such as "config/nav.yaml" or ".sdf", or
             the use of a file of any package: "@world" that is launched, "@controllers", which has
-            their types, or "@bridge", which has its rows; "robot" is the expanded robot.
+            their types, "@bridge", which has its rows, or "@parameters/filter", which the node
+            `filter` is given; "robot" is the expanded robot.
         at: The path of the entry below the root: in XML "gazebo[@reference='lidar']/sensor/@type",
             in YAML "ros__parameters.limits.max" or "[ros_topic_name=/scan].gz_type_name". A
             condition in brackets is a value that the entry contains. A key of YAML may contain
@@ -100,7 +107,7 @@ def entry_is(
         raise MissingElement(
             "robot", "", message="the file is not well-formed XML, so it has no elements"
         )
-    releases = submission.package.releases if submission.package is not None else ()
+    releases = submission.package.releases if submission.package else ()
     steps = [_with_names(step, robot) for step in split_path(at, is_xml=True)]
     wanted = _Wanted(steps, value, one_of, has, values or {}, tolerance, only, absent)
     tree = _robot_entry(reading, root, releases)
@@ -124,7 +131,7 @@ def _entry_of_file(
     package: Package, submission: Submission, *, file: str, at: str = "", **expected: Any
 ) -> Outcome:
     """Return whether a file of a package has an entry; the arguments are those of entry_is."""
-    if file in _USES:
+    if file in _USES or file.startswith(_GIVEN):
         from grader.workspace.api import used_file  # late: few rubrics ask for it
 
         package, file = used_file(submission.workspace, file)
@@ -149,8 +156,8 @@ class _Wanted(NamedTuple):
 
     steps: list[PathStep]
     value: Content | None = None
-    one_of: list[Scalar] | None = None
-    has: list[Scalar] | None = None
+    one_of: _Scalars = None
+    has: _Scalars = None
     values: Mapping[str, Content] = {}
     tolerance: float = _TOLERANCE
     only: bool = False  # no other items, or no other entries
@@ -184,7 +191,7 @@ class _Wanted(NamedTuple):
             return False
         return not all(self.wrong(search, entry) for entry in entries)
 
-    def has_own(self, entries: Sequence[TreeEntry]) -> bool:
+    def has_own(self, entries: _Entries) -> bool:
         """Return whether the entries at the path have the value themselves.
 
         It is enough that several of them have the values together.
@@ -202,7 +209,7 @@ class _Wanted(NamedTuple):
         expected = self.has if self.has is not None else self.value
         return len(expected) if isinstance(expected, list) else 1
 
-    def _has_any(self, entries: Sequence[TreeEntry], values: Sequence[Scalar]) -> bool:
+    def _has_any(self, entries: _Entries, values: Sequence[Scalar]) -> bool:
         return any(self.equals(entry, value) for entry in entries for value in values)
 
     def wrong(self, search: Search, entry: TreeEntry) -> list[str]:
@@ -213,7 +220,7 @@ class _Wanted(NamedTuple):
             if not self._have(_inside(search, entry, key), value)
         ]
 
-    def nearest(self, search: Search, entries: Sequence[TreeEntry]) -> TreeEntry:
+    def nearest(self, search: Search, entries: _Entries) -> TreeEntry:
         """Return the entry with the identifying attribute and the most of the other values."""
         wrong = {entry: self.wrong(search, entry) for entry in entries}
         return min(entries, key=lambda entry: (self.identity in wrong[entry], len(wrong[entry])))
@@ -238,7 +245,7 @@ class _Wanted(NamedTuple):
         numbers = numbers_in(entry.text) or ()
         return len(numbers) == 1 and abs(numbers[0] - expected) <= self.tolerance + _SLACK
 
-    def _have(self, entries: Sequence[TreeEntry], expected: Content) -> bool:
+    def _have(self, entries: _Entries, expected: Content) -> bool:
         """Return whether an entry is a value.
 
         For a list, return whether one is the list, or several have its items.
@@ -251,7 +258,7 @@ class _Wanted(NamedTuple):
                 return True
         return self._are_among(entries, expected)
 
-    def _are_among(self, entries: Sequence[TreeEntry], expected: Sequence[Scalar]) -> bool:
+    def _are_among(self, entries: _Entries, expected: Sequence[Scalar]) -> bool:
         """Return whether each expected value is that of a different entry, in any order."""
 
         def fitting(value: Scalar) -> list[int]:
@@ -266,16 +273,16 @@ def _library_name(text: str) -> str:
     Any other text stays as it is.
     """
     match = _LIBRARY_FILE.fullmatch(text)
-    return match[1] if match is not None else text
+    return match[1] if match else text
 
 
 def _inside(search: Search, entry: TreeEntry, key: str) -> list[TreeEntry]:
     return search.find(entry, split_path(key, is_xml=entry.is_xml))
 
 
-def _expand_list(entries: Sequence[TreeEntry]) -> list[TreeEntry]:
+def _expand_list(entries: _Entries) -> list[TreeEntry]:
     """Return entries, with the items of a list in its place."""
-    items: list[TreeEntry] = []
+    items = []
     for entry in entries:
         items += entry.children if entry.is_list else [entry]
     return items
@@ -297,14 +304,13 @@ def _judge(tree: TreeEntry, wanted: _Wanted, where: str) -> Outcome:
         rest = " with the expected values" if wanted.is_valued else ""
         outcome = passed(f"there is {shown}{rest}")
         if "@type" in wanted.values and best.is_nameless_sensor:
-            message = f"{shown} has no name, so Gazebo refuses the robot"
-            outcome = failed(message, best.place)
+            outcome = failed(f"{shown} has no name, so Gazebo refuses the robot", best.place)
         return outcome
     if wanted.identity in wrong and (len(entries) > 1 or wanted.identity == "@name"):
         return _no_identity(tree, search, entries, wanted)
     faults = [_fault_text(key, _inside(search, best, key), wanted.values[key]) for key in wrong]
     first = wanted.values[wrong[0]]
-    values = first if isinstance(first, list) else [first]
+    values = as_list(first)
     at = best
     for entry in _inside(search, best, wrong[0]):
         if not any(wanted.equals(entry, value) for value in values):
@@ -313,9 +319,7 @@ def _judge(tree: TreeEntry, wanted: _Wanted, where: str) -> Outcome:
     return failed(f"{shown}: {'; '.join(first_lines(faults, MAX_NAMED))}", at.place)
 
 
-def _judge_absence(
-    tree: TreeEntry, search: Search, entries: Sequence[TreeEntry], wanted: _Wanted
-) -> Outcome:
+def _judge_absence(tree: TreeEntry, search: Search, entries: _Entries, wanted: _Wanted) -> Outcome:
     """Return whether there is no entry at the path, or none with the values."""
     shown = _shown(wanted.steps, tree)
     values = " with these values" if wanted.is_valued else ""
@@ -332,7 +336,8 @@ def _no_entry(tree: TreeEntry, search: Search, wanted: _Wanted, where: str) -> O
     """
     steps = wanted.steps
     depth = max(count for count in range(len(steps)) if search.find(tree, steps[:count]))
-    above, step = search.find(tree, steps[:depth])[0], steps[depth]
+    above = search.find(tree, steps[:depth])[0]
+    step = steps[depth]
     shown = _shown(steps[: depth + 1], tree)
     if step.conditions:
         named = search.find(tree, [*steps[:depth], PathStep(step.name)])
@@ -358,7 +363,7 @@ def _nested(entry: TreeEntry) -> Iterator[tuple[TreeEntry, TreeEntry]]:
         yield from _nested(child)
 
 
-def _none_fits(search: Search, named: Sequence[TreeEntry], step: PathStep, shown: str) -> Outcome:
+def _none_fits(search: Search, named: _Entries, step: PathStep, shown: str) -> Outcome:
     """Return the failure of entries of which none has the values of the conditions."""
     rows = _expand_list(named) or list(named)
     known: dict[str, None] = {}  # the entries, as they would be named
@@ -377,11 +382,9 @@ def _none_fits(search: Search, named: Sequence[TreeEntry], step: PathStep, shown
     return failed(f"there is no {shown}", rows[0].place, detail=detail)
 
 
-def _no_identity(
-    tree: TreeEntry, search: Search, entries: Sequence[TreeEntry], wanted: _Wanted
-) -> Outcome:
+def _no_identity(tree: TreeEntry, search: Search, entries: _Entries, wanted: _Wanted) -> Outcome:
     """Return the failure of elements of which none has the identifying attribute."""
-    names: list[str] = []
+    names = []
     for entry in entries:
         names += [quoted(inner.text or "") for inner in _inside(search, entry, wanted.identity)]
     detail = f"; the file has {enumerated(names, MAX_NAMED)}" if names else ""
@@ -420,18 +423,18 @@ def _conditions_text(conditions: Iterable[tuple[str, str]]) -> str:
     return "".join(f"[{key}={value}]" for key, value in conditions)
 
 
-def _fault_text(key: str, entries: Sequence[TreeEntry], expected: Content) -> str:
+def _fault_text(key: str, entries: _Entries, expected: Content) -> str:
     """Return what is wrong with the texts at a path: 'update_rate' is 10; it should be 30."""
-    values = expected if isinstance(expected, list) else [expected]
-    should = f"it should be {enumerated([*map(_value_text, values)])}"
+    values = as_list(expected)
+    should = f"it should be {enumerated(map(_value_text, values))}"
     if entries:
         return f"{key!r} is {_texts(entries)}; {should}"
     return f"{key!r} is missing; {should}"
 
 
-def _texts(entries: Sequence[TreeEntry]) -> str:
+def _texts(entries: _Entries) -> str:
     """Return the texts of entries, or of the items of lists."""
-    return enumerated([*map(_entry_text, _expand_list(entries))], MAX_NAMED) or "empty"
+    return enumerated(map(_entry_text, _expand_list(entries)), MAX_NAMED) or "empty"
 
 
 def _entry_text(entry: TreeEntry) -> str:
@@ -446,11 +449,11 @@ def _should(wanted: _Wanted) -> str:
     """Return what an entry should be."""
     only = " and nothing else" if wanted.only else ""
     if wanted.has is not None:
-        return f"it should have {enumerated([*map(_value_text, wanted.has)])}{only}"
+        return f"it should have {enumerated(map(_value_text, wanted.has))}{only}"
     if wanted.one_of is not None:
-        return f"it should be {enumerated([*map(_value_text, wanted.one_of)], word='or')}"
+        return f"it should be {enumerated(map(_value_text, wanted.one_of), word='or')}"
     expected = wanted.value if isinstance(wanted.value, list) else [wanted.value or ""]
-    return f"it should be {enumerated([*map(_value_text, expected)])}{only}"
+    return f"it should be {enumerated(map(_value_text, expected))}{only}"
 
 
 def _value_text(value: Scalar) -> str:
@@ -490,10 +493,10 @@ def _kept(robot: Configuration, root: Element) -> Element:
     kept_tags = set()
     for link in robot.known.links:
         for part in (link.inertial, *link.visuals, *link.collisions):
-            if part is not None and part.location is not None:
+            if part and part.location is not None:
                 kept_tags.add(part.location.tag)
     copy = deepcopy(root)
-    for tag, element in enumerate([*copy.iter()]):
+    for tag, element in enumerate(list(copy.iter())):
         link_element = element.getparent()
         is_part = read_name(element) in _PARTS and tag not in kept_tags
         if is_part and link_element is not None and read_name(link_element) == "link":
@@ -506,7 +509,7 @@ def _dropped_part(tree: TreeEntry, wanted: _Wanted) -> MissingElement:
     links = Search().find(tree, wanted.steps[:1])
     below = wanted._replace(steps=wanted.steps[1:])
     link = next(link for link in links if below.found_in(link))
-    steps = [*wanted.steps]
+    steps = list(wanted.steps)
     for key in wanted.values:
         steps += split_path(key, is_xml=True)
     part = next(step.name for step in steps if step.name in _PARTS)
@@ -525,7 +528,7 @@ def _check_known(reading: Reading, tree: TreeEntry, wanted: _Wanted) -> None:
             elements += child.element.iter()
     for element in elements:
         unresolved = reading.unresolved.get(element)
-        if unresolved is not None:
+        if unresolved:
             for reason in (*unresolved.attributes.values(), unresolved.content):
                 if reason:
                     raise NotDecided(reason)
@@ -538,7 +541,7 @@ def _may_fit(entry: TreeEntry, step: PathStep, reading: Reading) -> bool:
     """
     conditions = [(key, value) for key, value in step.conditions if key.startswith("@")]
     unresolved = reading.unresolved.get(entry.element) if entry.element is not None else None
-    if unresolved is not None:
+    if unresolved:
         open_keys = {f"@{name}" for name in unresolved.attributes}
         conditions = [pair for pair in conditions if pair[0] not in open_keys]
         if unresolved.content is not None:

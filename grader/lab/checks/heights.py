@@ -22,6 +22,7 @@ ABOUT = {
     "under_the_base": About(picture="frame"),
     "above_others": About(picture="outline"),
 }
+_Heights = dict[str, float]  # of links
 
 
 def bottom_at_height(
@@ -73,9 +74,9 @@ def bottoms_at_height(
     lowest, missing = _measure_each(links, lambda link: span(robot, link, relative_to, Z_AXIS)[0])
     wrong = {link: value for link, value in lowest.items() if not within(value, height, tolerance)}
     actual = tuple(lowest.values())
-    if not wrong and missing is not None:
+    if not wrong and missing:
         raise missing
-    names = enumerated([repr(link) for link in lowest])
+    names = enumerated(map(repr, lowest))
     message = f"the bottoms of {names} are at z = {point(actual)} m in {relative_to!r}"
     if wrong:
         off = [
@@ -110,15 +111,17 @@ def under_the_base(
     x, y, _ = T_link_base.translation
     lowest, missing = _measure_each(wheels, lambda wheel: span(robot, wheel, link, Z_AXIS)[0])
     off = {wheel: value for wheel, value in lowest.items() if not within(value, 0.0, tolerance)}
-    faults = [*_find_pose_faults(base, T_link_base, tolerance, angle)]
+    faults = list(_find_pose_faults(base, T_link_base, tolerance, angle))
     for wheel, value in off.items():
         height = difference(value, "above", "below")
         faults.append(f"the lowest point of {wheel!r} is {height} it")
-    if missing is not None and not faults:
+    if missing and not faults:
         raise missing
-    verb, explanation = "is", ""
+    verb = "is"
+    explanation = ""
     if faults:
-        verb, explanation = "should be", f": {'; '.join(faults)}"
+        verb = "should be"
+        explanation = f": {'; '.join(faults)}"
     message = (
         f"the frame {link!r} {verb} under {base!r}, "
         f"level with the bottoms of the wheels{explanation}"
@@ -155,14 +158,16 @@ def above_others(
         tolerance: How far another link may reach above the lowest point of this one, in metres.
     """
     bottom, _ = span(robot, link, relative_to, Z_AXIS)
-    highest, top = "", -inf
+    highest = ""
+    top = -inf
     root = robot.find_root(link)
     for other in robot.robot.links:
         if other.name == link or robot.find_root(other.name) != root or not other.visuals:
             continue
         _, height = span(robot, other.name, relative_to, Z_AXIS)
         if height > top:
-            highest, top = other.name, height
+            highest = other.name
+            top = height
     at = origin_place(robot, link)
     above = top - bottom
     fine = not above > tolerance + SLACK
@@ -177,13 +182,13 @@ def above_others(
 
 def _measure_each(
     links: Sequence[str], measure: Callable[[str], float]
-) -> tuple[dict[str, float], MissingElement | UnknownShape | None]:
+) -> tuple[_Heights, MissingElement | UnknownShape | None]:
     """Return what can be measured of each link, and why one of them cannot.
 
     Such a link does not hide the others.
     """
-    measurements: dict[str, float] = {}
-    missing: MissingElement | UnknownShape | None = None
+    measurements = {}
+    missing = None
     for link in links:
         try:
             measurements[link] = measure(link)
@@ -196,8 +201,8 @@ def _measure_each(
 
 def _common_place(
     robot: Configuration,
-    wrong: dict[str, float],
-    lowest: dict[str, float],
+    wrong: _Heights,
+    lowest: _Heights,
     relative_to: str,
     tolerance: float,
 ) -> LazyLocation | None:

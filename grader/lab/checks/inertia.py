@@ -6,6 +6,7 @@ The inertia is compared with that of a uniform solid of its shapes.
 from math import isfinite
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.grouping import Strings
 from grader.base.quantities import in_millimetres, point, within
 from grader.base.source import place
 from grader.base.toml_types import NonNegative
@@ -57,7 +58,14 @@ def mass_is(
     )
 
 
-def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
+def inertia_plausible(
+    robot: Configuration,
+    *,
+    link: str,
+    tolerance: NonNegative,
+    mass: NonNegative | None = None,
+    shown: bool = False,
+) -> Outcome:
     """The inertia and the centre of mass of a link are those of a uniform solid of its shapes with
     its mass.
 
@@ -71,12 +79,16 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
         link: The link that is examined.
         tolerance: How far the inertia about any axis may be off, in percent of the largest
             principal moment of the solid.
+        mass: The mass of the solid in kilograms, in place of that of the link.
+        shown: Whether only the visuals count.
     """
     inertial = _needed_inertial(robot, link)
+    if mass is not None:
+        inertial = inertial._replace(mass=mass)
     impossible = _refuse_impossible(link, inertial)
-    if impossible is not None:
+    if impossible:
         return impossible
-    what, solid = _find_solid(robot, link)
+    what, solid = _find_solid(robot, link, ("visual",) if shown else ("collision shape", "visual"))
     try:
         difference = solid.difference(inertial)
     except ValueError:
@@ -84,7 +96,8 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
             f"the inertia of {link!r} cannot be compared: the volume of its {what} is too large"
         )
         return failed(message, robot.link(link).location)
-    off, distance = difference.percent, difference.distance
+    off = difference.percent
+    distance = difference.distance
     at = place(inertial.location, None, "inertia")
     if not isfinite(off + distance):
         return failed(
@@ -98,8 +111,8 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
             for name, actual, wanted in difference.components(tolerance)
         )
         solid_text = f"a uniform solid of its {what} with a mass of {inertial.mass:.6g} kg"
-        shown = f"{off:,.0f}" if 1e3 <= off < 1e10 else f"{off:.3g}"
-        wrong.append(f"the inertia of {link!r} is {shown} % off that of {solid_text}: {reason}")
+        percent = f"{off:,.0f}" if 1e3 <= off < 1e10 else f"{off:.3g}"
+        wrong.append(f"the inertia of {link!r} is {percent} % off that of {solid_text}: {reason}")
     if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * solid.size)):
         at = at if wrong else place(inertial.origin.location, "xyz") or place(inertial.location)
         wrong.append(
@@ -119,7 +132,7 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
 def _needed_inertial(robot: Configuration, link: str) -> Inertial:
     """Return the <inertial> of a link; raise MissingElement if ROS 2 reads none."""
     found_link = robot.link(link)
-    if found_link.inertial is None:
+    if not found_link.inertial:
         message = f"link {link!r} has no valid <inertial>"
         raise MissingElement("inertial", link, message=message, location=place(found_link.location))
     return found_link.inertial
@@ -144,13 +157,13 @@ def _refuse_impossible(link: str, inertial: Inertial) -> Outcome | None:
     return None
 
 
-def _find_solid(robot: Configuration, link: str) -> tuple[str, Solid]:
-    """Return what shapes of a link count, in words, and those that have a volume.
+def _find_solid(robot: Configuration, link: str, words: Strings) -> tuple[str, Solid]:
+    """Return the first of these kinds of shapes that a link has, and its solid.
 
     Raises UnknownShape for a mesh, MissingElement for a link without a shape.
     """
     found_link = robot.link(link)
-    for word in ("collision shape", "visual"):
+    for word in words:
         placed = with_volume(found_link.visuals if word == "visual" else found_link.collisions)
         if len(placed) > MAX_SHAPES:
             raise NotDecided(

@@ -3,11 +3,12 @@
 The checks of packages and of launch files use it.
 """
 
-import posixpath
 from collections.abc import Sequence
+from posixpath import basename, dirname
 from typing import Literal
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.grouping import Strings
 from grader.base.names import MAX_GUESSES, closest
 from grader.base.text import first_lines
 from grader.lab.checks.outcome import Outcome, failed, passed
@@ -20,7 +21,7 @@ INSTALLING = {
     "pattern": "a pattern matches no file",
     "elsewhere": "a build installs the file elsewhere",
 }
-_ENDINGS: dict[FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
+_ENDINGS: dict[FileKind, Strings] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
 
 
 def build_error(package: Package, *, where_there: bool = False) -> Outcome | None:
@@ -32,14 +33,15 @@ def build_error(package: Package, *, where_there: bool = False) -> Outcome | Non
     errors = [(fault.message, "", fault.at) for fault in setup.faults]
     there = package.tree.files.keys() | package.tree.folders
     for stop in setup.stops:
-        if stop.path == MANIFEST and package.manifest is None:
+        if stop.path == MANIFEST and not package.manifest:
             continue
         if not where_there or not stop.path or stop.path.rstrip("/") in there:
             errors.append((stop.message, stop.hint, stop.at))
     if errors:
         messages = list(dict.fromkeys(message for message, _, _ in errors))
         _, hint, at = errors[0]
-        message, problem = "; ".join(first_lines(messages, 3)), messages[0] + hint
+        message = "; ".join(first_lines(messages, 3))
+        problem = messages[0] + hint
         cause = "files"
         if setup.faults:
             cause = "name" if setup.faults[0].name else ""
@@ -53,7 +55,7 @@ def build_error(package: Package, *, where_there: bool = False) -> Outcome | Non
     if not setup.is_called:
         message = "setup.py does not call setup()"
         return failed(message, setup.location(setup.called_at), problem=message)
-    if setup.doubt is not None:
+    if setup.doubt:
         reason = f"{setup.doubt.reason} (line {setup.doubt.at.line} of {setup.file})"
         cause = f"cannot determine statically whether {setup.file} builds"
         raise NotDecided(f"{cause}: {reason}", cause)
@@ -70,7 +72,7 @@ def files_of_kind(package: Package, kind: FileKind, name: str) -> Sequence[str]:
         return [chosen] if chosen is not None else []
     endings = _ENDINGS[kind]
     paths = [path for path in package.tree.files if path.lower().endswith(endings)]
-    named = [path for path in paths if posixpath.basename(path) == name]
+    named = [path for path in paths if basename(path) == name]
     if named or kind != "urdf":
         return named or paths
     from grader.ros.package.robots import (  # late: the URDF usually has the lab's name
@@ -91,20 +93,20 @@ def require_installed(
     """
     setup = package.needed_installation()
     error = build_error(package)
-    if error is not None and not despite_errors:
+    if error and not despite_errors:
         return error._replace(message=f"a build fails: {error.message}", cause="fails")
-    if error is not None and _stops_at(package, files, kind):
+    if error and _stops_at(package, files, kind):
         return passed(f"{setup.file} has an entry for {files[0]}")
     copies = [copy for copy in setup.copies if copy.source in files]
     inside = [copy for copy in copies if copy.target.startswith(package.share)]
-    name = posixpath.basename(files[0])
-    targets = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == name})
+    name = basename(files[0])
+    targets = sorted({copy.target for copy in inside if basename(copy.target) == name})
     if kind == "launch" and len(targets) > 1:
         shown = " and as ".join(targets)
         message = f"a build installs {files[0]} as {shown}; ros2 launch needs exactly one"
         mistake = "a build installs the launch file twice"
         return failed(message, setup.location(inside[-1].at), mistake=mistake)
-    if inside and setup.misspelt is not None:
+    if inside and setup.misspelt:
         raise package.without_data_files(setup.misspelt.message)
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
@@ -133,7 +135,7 @@ def _why_no_copy(
 def _stops_at(package: Package, files: Sequence[str], kind: FileKind | None) -> bool:
     """Return whether a build stops at the entry for these files, so that it is there."""
     setup = package.needed_installation()
-    folders = {posixpath.dirname(path) for path in files}
+    folders = {dirname(path) for path in files}
     paths = [stop.path for stop in setup.stops if stop.path]
     if setup.is_cmake and any(
         closest(path, folders) for path in paths[:MAX_GUESSES]
@@ -141,7 +143,7 @@ def _stops_at(package: Package, files: Sequence[str], kind: FileKind | None) -> 
         return True
     kinds = _kinds_by_folder(package)
     for path in paths:
-        folder = posixpath.dirname(path)
+        folder = dirname(path)
         if folder in folders or (_kind_by_ending(path) or kinds.get(folder)) == kind:
             return True
     return False
@@ -152,9 +154,10 @@ def _why_not_installed(
 ) -> MissingElement:
     """Return why a build does not install files: no entry, or a pattern without a match."""
     setup = package.needed_installation()
-    what, message = f"installed {kind or files[0]}", f"a build does not install {files[0]}"
+    what = f"installed {kind or files[0]}"
+    message = f"a build does not install {files[0]}"
     empty = setup.empty_for(files, kind)
-    if empty is None:
+    if not empty:
         message += f": {'no' if setup.is_cmake else 'no entry of'} {setup.entries} names it"
         return MissingElement(
             what,
@@ -167,7 +170,8 @@ def _why_not_installed(
     # Late: a URDF on its own needs none of what reads a package.
     from grader.ros.package.found_problems import why_no_match
 
-    detail, at = why_no_match(package, empty.pattern), setup.location(empty.at)
+    detail = why_no_match(package, empty.pattern)
+    at = setup.location(empty.at)
     message += f": {problem}"
     return MissingElement(
         what,
@@ -193,9 +197,9 @@ def _kind_by_ending(path: str) -> FileKind | None:
 def _kinds_by_folder(package: Package) -> dict[str, FileKind]:
     """Return the kind of the files of each folder that has files of one kind."""
     kinds: dict[str, set[FileKind | None]] = {}
-    endings = (*_ENDINGS["urdf"], *_ENDINGS["rviz"])
+    endings = _ENDINGS["urdf"] + _ENDINGS["rviz"]
     for path in package.tree.files:
-        folder = posixpath.dirname(path)
+        folder = dirname(path)
         if folder and (path.endswith(endings) or ".launch." in path):
             kinds.setdefault(folder, set()).add(_kind_by_ending(path))
     of_one_kind = [

@@ -21,6 +21,8 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Dynamics, Joint
 from grader.ros.urdf.visuals import axis_place
 
+_Ratios = dict[str, tuple[float, float]]  # multiplier and offset, by joint
+
 
 def _breaks_without_direction(arguments: Mapping[str, Any]) -> Collection[str]:
     """Numbers for one direction of an axis, which a mimic joint may have the other way round."""
@@ -73,17 +75,16 @@ def joint_limits(
     joint = robot.moving_joint(link)
     limit = joint.limit
     effort_and_velocity = []
-    if limit is not None:
+    if limit:
         others = {"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}
-        effort_and_velocity = [*_expected_numbers(others, _EXACT)]
+        effort_and_velocity = list(_expected_numbers(others, _EXACT))
     if lower is not None and upper is not None:
         if direction is not None and _is_reversed(robot, joint, relative_to, direction):
             lower, upper = -upper, -lower
-        wanted_range = _WantedRange(lower, upper, tolerance)
-        return _judge_range(joint, link, wanted_range, effort_and_velocity)
+        return _judge_range(joint, link, _WantedRange(lower, upper, tolerance), effort_and_velocity)
     if lower is not None or upper is not None or (effort, velocity) == (None, None):
         raise RubricError(("joint_limits needs lower and upper, or effort or velocity",))
-    if limit is None:
+    if not limit:
         message = f"the joint that moves {link!r} has no <limit>"
         return failed(message, joint.location, detail=_joint_detail(joint))
     message = f"the joint that moves {link!r} has a <limit>"
@@ -112,19 +113,21 @@ def _judge_range(
     units, unit_of_json = ("degrees", "deg") if joint.type == "revolute" else ("m", "m")
     fault = f"it should be {_range_text(lower, upper)} {units}"
     limit = joint.limit
-    if limit is None:
+    if not limit:
         message = f"the joint that moves {link!r} has no limits; {fault}"
         return failed(message, joint.location, detail=detail)
-    low, high = limit.lower, limit.upper
+    low = limit.lower
+    high = limit.upper
     if joint.type == "revolute":
-        low, high = degrees(low), degrees(high)
+        low = degrees(low)
+        high = degrees(high)
     numbers = [
         _Number("lower", low, lower, tolerance, fault),
         _Number("upper", high, upper, tolerance, fault),
     ]
     if numbers[0].is_wrong or numbers[1].is_wrong:
         failure = _wrong_type(joint, link, lower, upper, tolerance)
-        if failure is not None:
+        if failure:
             return failure
     numbers += more
     message = f"the range of the joint that moves {link!r} is {_range_text(low, high)} {units}"
@@ -160,8 +163,10 @@ def joint_axis(
     if joint.type == "floating":
         message = f"the joint that moves {link!r} is floating, so it has no axis"
         return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
-    own_axis, T_relative_joint = robot.axis(joint), robot.pose(joint.child, relative_to=relative_to)
-    actual, expected = T_relative_joint.rotate(own_axis), unit(direction) or direction
+    own_axis = robot.axis(joint)
+    T_relative_joint = robot.pose(joint.child, relative_to=relative_to)
+    actual = T_relative_joint.rotate(own_axis)
+    expected = unit(direction) or direction
     off = degrees_between(actual, expected)
     off = min(off, 180.0 - off) if either_way else off
     axis = f"the axis of the joint that moves {link!r}"
@@ -219,13 +224,14 @@ def mimics(
         direction: The direction of the following joint's axis for which multiplier and offset are
             given.
     """
-    joint, leading = robot.moving_joint(link), robot.moving_joint(leader)
+    joint = robot.moving_joint(link)
+    leading = robot.moving_joint(leader)
     followed = _mimic_chain(robot, joint, link)
     at = place(joint.mimic.location, "joint") if joint.mimic else joint.location
     if leading.name not in followed:
         message = f"the joint that moves {link!r} does not mimic the joint that moves {leader!r}"
         detail = f" (joint {joint.name!r})"
-        if joint.mimic is not None:
+        if joint.mimic:
             detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r}, not {leading.name!r})"
         last = next(reversed(followed), joint.name)
         if not robot.robot.has_joint(last):
@@ -269,7 +275,7 @@ def joint_dynamics(
         tolerance,
     )
     message = f"the joint that moves {link!r} has {'<dynamics>' if given else 'no <dynamics>'}"
-    if given is None and not numbers:
+    if not given and not numbers:
         return failed(f"{message}; it should have one", joint.location, detail=_joint_detail(joint))
     return _compare_numbers(message, numbers, joint, given.location if given else joint.location)
 
@@ -287,17 +293,19 @@ def _is_reversed(
     return degrees_between(axis, unit(direction) or direction) > _RIGHT_ANGLE
 
 
-def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
+def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> _Ratios:
     """Return the joints that a joint mimics, directly and through others.
 
     Each has the multiplier and offset to it.
 
     The last may not exist. Raises MissingElement for a loop.
     """
-    ratios: dict[str, tuple[float, float]] = {}
-    first, ratio, shift = joint, 1.0, 0.0
+    ratios: _Ratios = {}
+    first = joint
+    ratio = 1.0
+    shift = 0.0
     while True:
-        if joint.mimic is None:
+        if not joint.mimic:
             return ratios
         name = joint.mimic.joint
         ratio, shift = ratio * joint.mimic.multiplier, ratio * joint.mimic.offset + shift
@@ -325,14 +333,18 @@ def _wrong_type(
     They are in metres instead of degrees, or the other way round.
     """
     limit = joint.limit
-    assert limit is not None
+    assert limit
     # More than a full turn in radians is a range in degrees, whatever the type of the joint.
     if max(abs(limit.lower), abs(limit.upper)) > FULL_TURN:
         return None
     if joint.type == "revolute":
-        other, ends, units = "prismatic", (limit.lower, limit.upper), "m"
+        other = "prismatic"
+        ends = (limit.lower, limit.upper)
+        units = "m"
     else:
-        other, ends, units = "revolute", (degrees(limit.lower), degrees(limit.upper)), "degrees"
+        other = "revolute"
+        ends = (degrees(limit.lower), degrees(limit.upper))
+        units = "degrees"
     if not within(ends[0], lower, tolerance) or not within(ends[1], upper, tolerance):
         return None
     message = (

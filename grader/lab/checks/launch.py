@@ -9,11 +9,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from grader.base.errors import MissingElement, NotDecided, RubricError
+from grader.base.grouping import Strings, StringsByName
 from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import About
 from grader.lab.checks.installed_files import INSTALLING, files_of_kind, require_installed
-from grader.lab.checks.launching import STOPS, evaluate_launch, fault_that_stops, path_of_launch
+from grader.lab.checks.launching import (
+    STOPS,
+    Quality,
+    evaluate_launch,
+    fault_that_stops,
+    path_of_launch,
+)
 from grader.lab.checks.outcome import Outcome, failed, judged, passed
 from grader.lab.checks.started_nodes import Fault, Wanted, find_faults
 from grader.lab.submission.submission import Submission
@@ -43,6 +50,7 @@ ABOUT = {
             "given": "a node has other remappings or arguments, or another file is included",
             "topic": "no node opens a topic, service or action",
             "type": "a topic has another type",
+            "quality": "the quality of service of a topic differs",
             "program": "an entry point in setup.py names no function",
         },
     ),
@@ -50,9 +58,9 @@ ABOUT = {
     "launch_complete": About(("launch", SETUP, "file"), causes={**INSTALLING, **_LOOKING}),
 }
 _UNKNOWN_FILES = "cannot determine statically which files it names"
-_ON_ONE_MACHINE = "the launch file looks for files at paths that exist on one machine only"
-_NOT_INSTALLED = "the launch file looks for files where a build does not install them"
 _Choices = Sequence[Sequence[str]]  # of nodes, each by its possible names
+_Ends = list[str] | StringsByName | None  # names, or their types by name
+_Places = Sequence[FilePlace]
 
 
 def launch_found(package: Package, *, name: str) -> Outcome:
@@ -77,15 +85,16 @@ def node_runs(
     launch: str,
     nodes: list[str] | None = None,
     not_: list[str] | None = None,
-    remap: Mapping[str, str] | None = None,
+    remap: StringsByName | None = None,
     arguments: list[str] | None = None,
     includes: list[str] | None = None,
-    publishes: list[str] | Mapping[str, str] | None = None,
-    subscribes: list[str] | Mapping[str, str] | None = None,
-    serves: list[str] | Mapping[str, str] | None = None,
-    calls: list[str] | Mapping[str, str] | None = None,
+    publishes: _Ends = None,
+    subscribes: _Ends = None,
+    serves: _Ends = None,
+    calls: _Ends = None,
     spawns: list[str] | None = None,
     active: list[str] | None = None,
+    qos: Mapping[str, Quality] | None = None,
     built: bool = True,
 ) -> Outcome:
     """The launch file starts these nodes, with the defaults of its arguments or those of the
@@ -115,6 +124,8 @@ def node_runs(
         spawns: Controllers that spawners start, by whichever of them.
         active: Nodes with a lifecycle that become active: by a lifecycle manager, an event of a
             launch file, or their code.
+        qos: The quality of service of nodes that are not submitted, by the topics at whose other
+            end they are: default, sensor_data or transient_local.
         built: Whether it must find the files that it reads; if not, only what else stops it counts.
     """
     evaluated = evaluate_launch(package, launch)
@@ -143,11 +154,12 @@ def node_runs(
         calls=calls,
         spawns=spawns,
         active=active,
+        qos=qos,
     )
     faults = find_faults(submission, evaluated, choices, wanted) if any(wanted) else []
     failure = _fail_certainly(package, evaluated, choices, faults)
     failure = failure or _stop_at_files(package, evaluated, places, built=built)
-    if failure is not None:
+    if failure:
         return failure
     if built or not any(place.is_in_misnamed(package) for place in places):
         _check_starts(evaluated)
@@ -166,14 +178,18 @@ def _fail_certainly(
         if fault.is_certain:
             return failed(fault.message, fault.at, detail=fault.detail, cause=fault.cause)
     ending = _faulty_program(package, launch, choices)
-    if ending is not None:
+    if ending:
         raise ending
     return None
 
 
-def _pass_started(launch: "Launch", wanted_nodes: tuple[str, ...]) -> Outcome:
+def _list_started(launch: "Launch") -> list[str]:
+    return sorted({node.name for node in launch.nodes if node.when})
+
+
+def _pass_started(launch: "Launch", wanted_nodes: Strings) -> Outcome:
     """Return the outcome of a launch file that starts what it should."""
-    started = sorted({node.name for node in launch.nodes if node.when})
+    started = _list_started(launch)
     message = f"the launch file starts {', '.join(started)}"
     return judged(True, message, tuple(started), wanted_nodes)
 
@@ -195,44 +211,43 @@ def _names_in(launch: "Launch", names: Iterable[str]) -> list[str]:
 def _add_components(submission: Submission, launch: "Launch", names: Sequence[str]) -> list[str]:
     """Return names of nodes with those of the components that are the nodes of these programs."""
     code = submission.workspace.code
-    all_names = [*names]
+    all_names = list(names)
     for node in launch.nodes:
         if node.program_name in names:
             all_names.append(node.name)
     for name in names:
         package, _, executable = name.rpartition("/")
+        package = package or executable  # one name if both are the same
         own_code = code.by_package.get(package)
-        for program in own_code.programs if own_code is not None else ():
+        for program in own_code.programs if own_code else ():
             if program.name == executable and program.nodes:
                 for node in launch.nodes:
-                    if node.package == package and (*code.find_nodes(node),) == program.nodes:
+                    if node.package == package and tuple(code.find_nodes(node)) == program.nodes:
                         all_names.append(node.name)
-    return [*dict.fromkeys(all_names)]
+    return list(dict.fromkeys(all_names))
 
 
 def _missing_nodes(launch: "Launch", choices: _Choices) -> list[Sequence[str]]:
     """Return the nodes that are not certainly started."""
-    started = {node.name for node in launch.nodes if node.when}
+    started = set(_list_started(launch))
     return [choice for choice in choices if started.isdisjoint(choice)]
 
 
 def _listed(missing: _Choices) -> str:
-    return ", ".join(" or ".join(choice) for choice in missing)
+    return ", ".join(map(" or ".join, missing))
 
 
 def _fail_missing(launch: "Launch", missing: _Choices, nodes: Sequence[str]) -> Outcome:
     """Return the failure of a launch file that certainly does not start some nodes."""
-    started = sorted({node.name for node in launch.nodes if node.when})
+    started = _list_started(launch)
     reason, at = _why_missing(launch, {node for choice in missing for node in choice})
-    what, detail = (
-        f"the launch file does not start {_listed(missing)}",
-        f"; it starts {', '.join(started) or 'nothing'}",
-    )
+    what = f"the launch file does not start {_listed(missing)}"
+    detail = f"; it starts {', '.join(started) or 'nothing'}"
     return judged(False, what, tuple(started), tuple(nodes), at=at, detail=f"{detail}{reason}")
 
 
 def _stop_at_files(
-    package: Package, launch: "Launch", places: Sequence[FilePlace], *, built: bool
+    package: Package, launch: "Launch", places: _Places, *, built: bool
 ) -> Outcome | None:
     """Return the failure of a launch file that stops at a file that it reads.
 
@@ -249,7 +264,7 @@ def _check_decided(
     launch: "Launch",
     missing: _Choices,
     faults: Sequence[Fault],
-    places: Sequence[FilePlace],
+    places: _Places,
 ) -> None:
     """Raise NotDecided if the started nodes are not known.
 
@@ -309,7 +324,7 @@ def _look_for_files(
 
     Where it `needs_robot`, one that names neither a URDF nor an RViz file fails.
     """
-    if not started and package.launch(path_of_launch(package, name)).syntax is not None:
+    if not started and package.launch(path_of_launch(package, name)).syntax:
         return passed("the launch file cannot be read, so it looks for no file")
     launch = evaluate_launch(package, name)
     places = find_places(package, launch, "urdf", "rviz", "include", "read", built=built)
@@ -325,7 +340,7 @@ def _look_for_files(
     return _judge_files(package, launch, name, places, needs_robot=needs_robot)
 
 
-def _in_state(places: Sequence[FilePlace], state: str) -> list[FilePlace]:
+def _in_state(places: _Places, state: str) -> list[FilePlace]:
     return [place for place in places if place.state == state]
 
 
@@ -333,7 +348,7 @@ def _judge_files(
     package: Package,
     launch: "Launch",
     name: str,
-    places: Sequence[FilePlace],
+    places: _Places,
     *,
     needs_robot: bool,
 ) -> Outcome:
@@ -344,7 +359,7 @@ def _judge_files(
         raise fault_that_stops(path_of_launch(package, name), launch)
     if names_none and needs_robot:
         raise _no_files(launch)
-    if unknown is not None:
+    if unknown:
         raise NotDecided(unknown.text, _UNKNOWN_FILES)
     if not launch.faults:
         _check_starts(launch)
@@ -375,7 +390,8 @@ def launch_complete(package: Package, *, name: str, started: bool = True) -> Out
 def _check_starts(launch: "Launch") -> None:
     """Raise NotDecided if it is not known whether the launch file starts."""
     if launch.doubts:
-        message, at = launch.doubts[0].message, launch.doubts[0].location
+        message = launch.doubts[0].message
+        at = launch.doubts[0].location
         what = "cannot determine statically whether ros2 launch starts the file"
         raise NotDecided(f"{what}: line {at.line}: {message}", what)
 
@@ -394,10 +410,11 @@ def _faulty_program(package: Package, launch: "Launch", choices: _Choices) -> Mi
             if node.when is not False and node.name in choice
         }
         fault = certain_fault(package, started.values())
-        if fault is not None:
+        if fault:
             name = next(iter(started))
             message = f"the entry point of {name.rpartition('/')[2]!r} names no function"
-            why, at = f": {fault.message}", fault.location
+            why = f": {fault.message}"
+            at = fault.location
             return MissingElement(
                 "entry point",
                 name,
@@ -413,7 +430,7 @@ def _faulty_program(package: Package, launch: "Launch", choices: _Choices) -> Mi
 def _may_start(launch: "Launch", missing: _Choices) -> bool:
     """Return whether each of the missing nodes may be started by what is not known."""
     uncertain = {node.name for node in launch.nodes if node.when is None}
-    return bool(launch.unknown) or not any(uncertain.isdisjoint(choice) for choice in missing)
+    return bool(launch.unknown) or not any(map(uncertain.isdisjoint, missing))
 
 
 def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | None]":
@@ -440,7 +457,7 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
     return "", next((node.location for node in similar), None)
 
 
-def _pass_places(places: Sequence[FilePlace]) -> Outcome:
+def _pass_places(places: _Places) -> Outcome:
     if any(place.state == "missing" for place in places):
         return passed("the launch file looks for files of the package")
     texts = dict.fromkeys(place.text for place in places if place.text)
@@ -449,7 +466,7 @@ def _pass_places(places: Sequence[FilePlace]) -> Outcome:
     return passed(f"a build installs {enumerated(texts)}, where the launch file looks")
 
 
-def _fail_places(package: Package, launch: "Launch", wrong: Sequence[FilePlace]) -> Outcome:
+def _fail_places(package: Package, launch: "Launch", wrong: _Places) -> Outcome:
     message = "; ".join(dict.fromkeys(place.text for place in wrong))
     is_local = any(place.is_local for place in wrong)
     if is_local:
@@ -457,7 +474,11 @@ def _fail_places(package: Package, launch: "Launch", wrong: Sequence[FilePlace])
             f"; use get_package_share_directory({package.name!r}), which returns the installed "
             "folder"
         )
-    mistake = wrong[0].mistake or (_ON_ONE_MACHINE if is_local else _NOT_INSTALLED)
+    mistake = wrong[0].mistake or (
+        "the launch file looks for files at paths that exist on one machine only"
+        if is_local
+        else "the launch file looks for files where a build does not install them"
+    )
     at = wrong[0].location_in(launch.source)
     return failed(message, at, problem=wrong[0].problem, mistake=mistake, cause=wrong[0].cause)
 
@@ -481,7 +502,7 @@ def _warning_that_stops(package: Package, place: FilePlace) -> Outcome | None:
         detail = " about --inorder: remove it"
         return failed(mistake, place.file.location, detail=detail, cause="stops")
     warning = place.installed_robot(package).warning
-    if warning is None:
+    if not warning:
         return None
     source = package.installed.get(place.text, posixpath.basename(place.text))
     detail = f": line {warning.location.line} of {source}: {warning.message}"

@@ -4,7 +4,6 @@ The graph is that of `grader graph`. What is not read, or known only at run time
 criterion open where it may decide it.
 """
 
-import re
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -15,18 +14,35 @@ from grader.base.text import MAX_NAMED, enumerated, quoted
 from grader.base.toml_types import NonNegative
 from grader.base.transforms import Transform, Vector, rotation_from_rpy, turn_between
 from grader.lab.checks.check import About
-from grader.lab.checks.launching import RUNS, Launched, launch_together
+from grader.lab.checks.launching import (
+    OPENS,
+    RUNS,
+    Launched,
+    Quality,
+    check_open,
+    fail_absent,
+    full_name,
+    launch_together,
+    type_name,
+)
 from grader.lab.checks.outcome import Outcome, failed, judged, measured_point, measured_turn
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
 
 if TYPE_CHECKING:
     from grader.ros.api import EndpointKind
-    from grader.workspace.api import GraphEnd, GraphTransform, PlacedEnd
+    from grader.workspace.api import GraphEnd, GraphTransform
 
-_NAMED = {**RUNS, "topic": "no node opens a topic, service or action", "type": "a type differs"}
+_NAMED = {**OPENS, "type": "a type differs"}
 ABOUT = {
-    "connects": About(("launch",), causes={**_NAMED, "way": "nodes are not connected"}),
+    "connects": About(
+        ("launch",),
+        causes={
+            **_NAMED,
+            "way": "nodes are not connected",
+            "quality": "the quality of service differs",
+        },
+    ),
     "topic_has_type": About(("launch",), causes=_NAMED),
     "reaches": About(("launch",), causes=_NAMED),
     "publishes_transform": About(
@@ -55,6 +71,7 @@ def connects(
     from_: str,
     to: str,
     read: bool = False,
+    qos: Quality | None = None,
     launch: str | None = None,
 ) -> Outcome:
     """Messages find a way from one topic to another one through nodes that are started, whatever
@@ -69,13 +86,16 @@ def connects(
         to: The topic where it ends.
         read: Whether a node, a controller or a bridge must read the last topic, with its type. If
             both topics are one, nothing else is asked.
+        qos: The quality of service of nodes that are not submitted: of what publishes the first
+            topic, and of what reads the last one.
         launch: The name of the launch file; default: all launch files together.
     """
-    start, end = _full_name(from_), _full_name(to)
-    for topic in (start, end):
-        if topic in _HIDDEN:
-            raise RubricError((f"connects follows no messages of {topic}",))
+    start, end = full_name(from_), full_name(to)
+    _refuse_hidden("connects follows no messages of", start, end)
     launched = launch_together(package, submission, launch)
+    unheard = _judge_quality(launched, (start, end), qos)
+    if unheard:
+        return unheard
     if read and start == end:
         return _judge_reader(launched, end, f"messages are published on {end}")
     way = launched.graph.find_way(start, end)
@@ -89,16 +109,45 @@ def connects(
     return _judge_reader(launched, end, message) if read else judged(True, message, names)
 
 
+def _refuse_hidden(what: str, *topics: str) -> None:
+    """Raise RubricError for topics that every node has."""
+    for topic in topics:
+        if topic in _HIDDEN:
+            raise RubricError((f"{what} {topic}",))
+
+
+def _judge_quality(
+    launched: Launched, way: tuple[str, str], others: Quality | None
+) -> Outcome | None:
+    """Return that an end of a way does not connect to a node outside; None if all do."""
+    from grader.workspace.api import fault_with_others  # late: few rubrics ask
+
+    if others is None:
+        return None
+    ends = [*launched.graph.ends(_READS, way[0]), *launched.graph.ends(_SENDS, way[1])]
+    for placed in ends:
+        if not placed.doubt:
+            end = placed.end
+            fault = fault_with_others(end.kind, end.qos, others)
+            if fault:
+                message = (
+                    f"{end.name} does not connect to nodes whose quality of service is "
+                    f"{quoted(others)}"
+                )
+                return failed(message, end.location, detail=f": {fault}", cause="quality")
+    return None
+
+
 def _judge_reader(launched: Launched, topic: str, message: str) -> Outcome:
     """Return whether what is published on a topic is read."""
     reader = launched.graph.find_reader(topic)
-    if reader is not None:
+    if reader:
         return judged(True, f"{message}, which {reader.node.label} reads", reader.node.label)
     sent, read = launched.graph.ends(_SENDS, topic), launched.graph.ends(_READS, topic)
-    _check_open(launched, f"{topic} is published", sent, _SENDS)
-    _check_open(launched, f"something reads {topic}", read, _READS)
-    if launched.failure is not None or not sent:
-        return launched.failure or _fail_absent(launched, _SENDS, "publishes", topic)
+    check_open(launched, f"{topic} is published", sent, _SENDS)
+    check_open(launched, f"something reads {topic}", read, _READS)
+    if launched.failure or not sent:
+        return launched.failure or fail_absent(launched, _SENDS, "publishes", topic)
     publisher = sent[0]
     message = f"{publisher.node.label} publishes {topic} with {publisher.end.type}"
     if read:
@@ -126,9 +175,8 @@ def topic_has_type(
         type: Its type: sensor_msgs/msg/LaserScan.
         launch: The name of the launch file; default: all launch files together.
     """
-    name, wanted = _full_name(topic), _type_name(type)
-    if name in _HIDDEN:
-        raise RubricError((f"topic_has_type knows no types of {name}",))
+    name, wanted = full_name(topic), type_name(type)
+    _refuse_hidden("topic_has_type knows no types of", name)
     launched = launch_together(package, submission, launch)
     ends = launched.graph.ends(_ENDS_OF_TOPIC, name)
     certain = [placed.end for placed in ends if not placed.doubt]
@@ -138,8 +186,8 @@ def topic_has_type(
             return failed(message, end.location, cause="type")
     if certain:
         return judged(True, f"{name} has the type {wanted}", wanted, wanted)
-    _check_open(launched, f"{name} has the type {wanted}", ends, _ENDS_OF_TOPIC)
-    return launched.failure or _fail_absent(launched, _ENDS_OF_TOPIC, "opens", name)
+    check_open(launched, f"{name} has the type {wanted}", ends, _ENDS_OF_TOPIC)
+    return launched.failure or fail_absent(launched, _ENDS_OF_TOPIC, "opens", name)
 
 
 def reaches(
@@ -158,21 +206,22 @@ def reaches(
         type: Its type: std_srvs/srv/Trigger.
         launch: The name of the launch file; default: all launch files together.
     """
-    name, wanted = _full_name(service), _type_name(type or "")
+    name, wanted = full_name(service), type_name(type or "")
     launched = launch_together(package, submission, launch)
-    servers, clients = launched.graph.ends(_SERVERS, name), launched.graph.ends(_CLIENTS, name)
+    servers = launched.graph.ends(_SERVERS, name)
+    clients = launched.graph.ends(_CLIENTS, name)
     for server in servers:
         for client in clients:
             if not (server.doubt or client.doubt) and _do_meet(server.end, client.end, wanted):
                 nodes = (client.node.label, server.node.label)
                 return judged(True, f"{nodes[0]} calls {name}, which {nodes[1]} serves", nodes)
     for verb, kinds, ends in (("serves", _SERVERS, servers), ("calls", _CLIENTS, clients)):
-        _check_open(launched, f"a node {verb} {name}", ends, kinds)
-    if launched.failure is not None:
+        check_open(launched, f"a node {verb} {name}", ends, kinds)
+    if launched.failure:
         return launched.failure
     for verb, kinds, ends in (("serves", _SERVERS, servers), ("calls", _CLIENTS, clients)):
         if not ends:
-            return _fail_absent(launched, kinds, verb, name)
+            return fail_absent(launched, kinds, verb, name)
     return _fail_pair(name, servers[0].end, clients[0].end, wanted)
 
 
@@ -204,7 +253,8 @@ def publishes_transform(
         launch: The name of the launch file; default: all launch files together.
     """
     launched = launch_together(package, submission, launch)
-    above, below = parent.removeprefix("/"), child.removeprefix("/")
+    above = parent.removeprefix("/")
+    below = child.removeprefix("/")
     transforms = launched.graph.transforms()
     certain = [transform for transform in transforms if transform.is_certain]
     with_states = [each for each in certain if _gets_joint_states(launched, each)]
@@ -216,8 +266,7 @@ def publishes_transform(
     if chain is not None:
         by = tuple(dict.fromkeys(transform.by for transform in chain))
         if xyz is None and rpy is None:
-            message = f"{below} is published below {above} by {enumerated(by)}"
-            return judged(True, message, by)
+            return judged(True, f"{below} is published below {above} by {enumerated(by)}", by)
         T_above_below = _pose_along(chain, above, below)
         at = chain[-1].location
         if xyz is not None:
@@ -240,38 +289,11 @@ def _pose_along(chain: "Sequence[GraphTransform]", above: str, below: str) -> Tr
     """Return T_above_below of a row of transforms, the lowest first."""
     T_above_below = Transform()
     for transform in chain:
-        if transform.pose is None:
+        if not transform.pose:
             cause = f"cannot determine statically where {below} is in {above}"
             raise NotDecided(f"{cause}: {transform.by} computes it", cause)
         T_above_below = transform.pose @ T_above_below
     return T_above_below
-
-
-def _check_open(
-    launched: Launched, what: str, ends: "Sequence[PlacedEnd]", kinds: "Sequence[EndpointKind]"
-) -> None:
-    """Raise NotDecided if an end may be there that is not certain."""
-    doubts = [placed.doubt for placed in ends if placed.doubt]
-    if not ends:
-        doubts += launched.graph.why_more_ends(kinds)
-    if doubts:
-        message = f"cannot determine statically whether {what}: {doubts[0]}"
-        raise NotDecided(message, "cannot determine statically what the nodes open")
-
-
-def _fail_absent(
-    launched: Launched, kinds: "Sequence[EndpointKind]", verb: str, name: str
-) -> Outcome:
-    """Return that no node opens an end of these kinds, with a name that is like it."""
-    others = {}
-    for node in launched.graph.graph.nodes:
-        others.update({end.name: end for end in node.ends if end.kind in kinds})
-    message = f"no node {verb} {name}"
-    meant = closest(name, [*others])
-    if meant is None:
-        return failed(message, cause="topic")
-    guess = f"; there is {quoted(meant)}"
-    return failed(message, others[meant].location, detail=guess, cause="topic")
 
 
 def _gets_joint_states(launched: Launched, transform: "GraphTransform") -> bool:
@@ -288,7 +310,7 @@ def _fail_without_states(launched: Launched, chain: "Sequence[GraphTransform]") 
     lacking = next(each for each in chain if not _gets_joint_states(launched, each))
     for topic in lacking.needs:
         ends = launched.graph.ends(_SENDS, topic)
-        _check_open(launched, f"something publishes {topic}", ends, _SENDS)
+        check_open(launched, f"something publishes {topic}", ends, _SENDS)
     if launched.has_commands:
         cause = f"cannot determine statically whether something publishes {lacking.needs[0]}"
         raise NotDecided(f"{cause}: a command of a launch file may start it", cause)
@@ -305,15 +327,7 @@ def _doubt_of_transform(
         if not transform.is_certain:
             return f"whether {transform.by} publishes {transform.child} is not known"
     unread = next(launched.graph.unread_transforms(), None)
-    return unread.reason if unread is not None else ""
-
-
-def _full_name(name: str) -> str:
-    return f"/{name.removeprefix('/')}"
-
-
-def _type_name(name: str) -> str:
-    return re.sub("[.:/]+", "/", name)
+    return unread.reason if unread else ""
 
 
 def _do_meet(offered: "GraphEnd", asked: "GraphEnd", wanted: str) -> bool:
@@ -338,20 +352,19 @@ def _fail_way(launched: Launched, start: str, end: str, reached: Sequence[int]) 
     if not reached:
         read = launched.graph.ends(_READS, start)
         if not read:
-            return _fail_absent(launched, _READS, "subscribes to", start)
-        sent = launched.graph.ends(_SENDS, start)
+            return fail_absent(launched, _READS, "subscribes to", start)
         message = f"what subscribes to {start} does not connect to what publishes it"
-        types = enumerated(dict.fromkeys(placed.end.type for placed in (*sent, *read)))
-        return failed(message, read[0].end.location, detail=f": {types}", cause="type")
+        faulty = launched.graph.faulty_connections()
+        detail = next((f": {each.fault}" for each in faulty if each.name == start), "")
+        return failed(message, read[0].end.location, detail=detail, cause="type")
     for connection in launched.graph.faulty_connections():
         if connection.from_node in reached:
             message = f"messages of {start} do not find a way to {end}"
             detail = f": {connection.name} does not connect, {connection.fault}"
-            at = connection.to_end.location
-            return failed(message, at, detail=detail, cause="type")
+            return failed(message, connection.to_end.location, detail=detail, cause="type")
     publishing = launched.graph.ends(_SENDS, end)
     if not publishing:
-        return _fail_absent(launched, _SENDS, "publishes", end)
+        return fail_absent(launched, _SENDS, "publishes", end)
     labels = [nodes[number].label for number in reached]
     message = f"messages of {start} do not find a way to {end}"
     names = enumerated([placed.node.label for placed in publishing], MAX_NAMED)

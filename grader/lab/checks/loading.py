@@ -24,7 +24,7 @@ def urdf_loads(urdf: Reading) -> Outcome:
         if problem.kind.effect == "rejects" or problem.kind.detaches_links
     ]
     raw = urdf.raw_xacro
-    if raw is not None and urdf.verdict != "clean":
+    if raw and urdf.verdict != "clean":
         return _raw_xacro_failure(urdf, raw)
     if not problems and urdf.verdict != "rejected":
         return passed("ROS 2 loads the file, and all links form one tree")
@@ -75,7 +75,7 @@ def list_with_lines(assumed: Iterable[tuple[str, Location]]) -> str:
     texts = []
     for sentence, numbers in lines.items():
         word = "line" if len(numbers) == 1 else "lines"
-        texts.append(f"{sentence} ({word} {enumerated([*numbers], _MAX_ASSUMED)})")
+        texts.append(f"{sentence} ({word} {enumerated(numbers, _MAX_ASSUMED)})")
     return enumerated(texts, _MAX_ASSUMED)
 
 

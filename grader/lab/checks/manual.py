@@ -3,10 +3,14 @@
 The grader finds answers and pictures, and a person marks them.
 """
 
+import posixpath
 import re
 from collections.abc import Sequence
+from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
+from grader.base.grouping import Strings
+from grader.base.source import Source
 from grader.base.text import capitalised, enumerated
 from grader.lab.checks.outcome import Outcome, pending
 from grader.lab.submission.submission import Submission
@@ -30,6 +34,7 @@ _MAY_HOLD_PICTURES = frozenset(
     {".docx", ".doc", ".odt", ".pages", ".ipynb", ".pptx", ".odp", ".rtf", ".rar", ".7z"}
 )
 _MAX_LISTED = 6  # files in one message
+_MAX_SHOWN = 256 * 1024  # bytes of a file in which a passage is searched
 _NOT_FOUND = "not found"
 _ONLY_QUESTION = "only the question is there"
 _UNANSWERED = f"not answered yet: {_ONLY_QUESTION}"
@@ -44,7 +49,7 @@ def answered(
     *,
     question: str,
     places: list[str],
-    files: tuple[str, ...] = _DOCUMENTS,
+    files: Strings = _DOCUMENTS,
     answer: str = "",
 ) -> Outcome:
     """A question is answered in writing; needs manual grading.
@@ -72,9 +77,9 @@ def answered(
     unread = f" (not read: {'; '.join(found_answer.unread[:4])})" if found_answer.unread else ""
     doubts = ["not every document was read"] if found_answer.unread else []
     passage = found_answer.passage
-    if passage is None:
+    if not passage:
         searched = f" in {enumerated(found_answer.read, _MAX_LISTED)}" if found_answer.read else ""
-        labels = enumerated([repr(label) for label in places[:3]], word="or")
+        labels = enumerated(map(repr, places[:3]), word="or")
         message = (
             f"{question} No answer was found under {labels}{searched}; needs manual grading{unread}"
         )
@@ -119,7 +124,7 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     evidence = find_evidence(submission.labelled_files, names, submission.readable_documents)
     if evidence.files:
         return _pending_pictures("needs manual grading: ", evidence.files)
-    labels = enumerated([repr(name) for name in names[:3]], word="or")
+    labels = enumerated(map(repr, names[:3]), word="or")
     if evidence.possible:
         start = f"no picture or document is certain to be {labels}; needs manual grading, perhaps: "
         return _pending_pictures(start, evidence.possible)._replace(problem="perhaps")
@@ -162,4 +167,32 @@ def _pending_pictures(start: str, found_files: "tuple[EvidenceFile, ...]") -> Ou
     )
 
 
-MANUAL_CHECKS = (answered, evidence_shown)
+def manual(
+    submission: Submission, *, question: str, files: list[str] | None = None, passage: str = ""
+) -> Outcome:
+    """Something that no check decides; needs manual grading.
+
+    Args:
+        question: What a person decides, as the report repeats it.
+        files: Patterns for the names of the files that it is about, such as `*.cpp`; the first file
+            that has the passage is shown.
+        passage: Words of the line in it; without them, the first line.
+    """
+    for path in sorted(submission.tree.files):
+        name = posixpath.basename(path)
+        if any(fnmatchcase(name, pattern) for pattern in files or ()):
+            text = (submission.tree.read(path, _MAX_SHOWN) or b"").decode(errors="replace")
+            start = text.find(passage)
+            if start >= 0:
+                at = Source(path, text).at(start)
+                shown = text.splitlines()[at.line - 1].strip() if text else ""
+                message = f"{question} Needs manual grading: see {at.file_and_line}"
+                return Outcome("pending", message, shown, location=at)
+    message = f"{question} Needs manual grading"
+    if not files:
+        return pending(message)
+    searched = f" with {passage!r}" if passage else ""
+    return pending(message, problem=f"no {enumerated(files, word='or')}{searched}")
+
+
+MANUAL_CHECKS = (answered, evidence_shown, manual)

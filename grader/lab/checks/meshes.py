@@ -26,7 +26,6 @@ from grader.ros.urdf.visuals import placed, visuals
 ABOUT = {"shows_mesh": About(("mesh", "visual"), picture="outline")}
 
 _ANGLE = 1.0  # degrees that a mesh may be turned
-_BEST_FIRST = ("passed", "pending", "failed")
 
 
 class _ShownMesh(NamedTuple):
@@ -91,17 +90,15 @@ def shows_mesh(
         if isinstance(visual.geometry, Mesh)
     ]
     if not meshes:
-        message, at = (
-            f"{link!r} shows {shape_name(shown[0].geometry)}; it should show a mesh",
-            shown[0].geometry.location,
-        )
+        message = f"{link!r} shows {shape_name(shown[0].geometry)}; it should show a mesh"
+        at = shown[0].geometry.location
         raise MissingElement("mesh", link, message=message, location=place(at))
     named = [mesh for mesh in meshes if mesh.file.ends_in(mesh_file(file))]
     if not named:
         return _another_file(meshes, file)
     wanted = _Pose(relative_to or link, scale, xyz, rpy, tolerance)
     outcomes = [_examine_mesh(robot, submission, mesh, wanted) for mesh in named]
-    best = min(outcomes, key=lambda outcome: _BEST_FIRST.index(outcome.status))
+    best = min(outcomes, key=lambda outcome: ("passed", "pending", "failed").index(outcome.status))
     if best.status == "failed":
         return best
     return _broken_collision(robot, submission, link) or best
@@ -138,16 +135,15 @@ def _examine_mesh(
     robot: Configuration, submission: Submission, shown: _ShownMesh, wanted: _Pose
 ) -> Outcome:
     """Return the outcome for one mesh of the right name."""
-    name, fault, doubt, cause = (
-        quoted_end(shown.file.written),
-        shown.file.fault,
-        shown.file.doubt,
-        shown.file.doubt,
-    )
+    name = quoted_end(shown.file.written)
+    fault = shown.file.fault
+    doubt = shown.file.doubt
+    cause = shown.file.doubt
     try:
         fault = fault or shown.file.why_not_found(submission.packages, submission.tree)
     except NotDecided as reason:
-        doubt, cause = str(reason), reason.cause
+        doubt = str(reason)
+        cause = reason.cause
     if fault:
         wrong = [(f"the mesh of {shown.link!r} {fault}", place(shown.mesh.location, "filename"))]
     else:

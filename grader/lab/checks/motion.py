@@ -52,9 +52,11 @@ def rolls_forward(
     """
     robot = _as_turning(robot, link) if any_type else robot
     joint = turning_joint(robot, link, base)
-    ahead, upward = unit(forward) or forward, unit(up) or up
+    ahead = unit(forward) or forward
+    upward = unit(up) or up
     travel, why_not = find_travel(robot, link, joint, base, upward)
-    at, detail = axis_place(joint), f" (joint {joint.name!r})"
+    at = axis_place(joint)
+    detail = f" (joint {joint.name!r})"
     if travel is None:
         message = f"{link!r} does not roll when its joint turns: {why_not}"
         return judged(False, message, None, ahead, tolerance, "deg", at=at, detail=detail)
@@ -87,7 +89,8 @@ def axis_along(
         tolerance: How far the direction may be off, in degrees.
     """
     pose = robot.pose(link, relative_to=relative_to)
-    actual, expected = pose.rotate(unit(axis) or axis), unit(direction) or direction
+    actual = pose.rotate(unit(axis) or axis)
+    expected = unit(direction) or direction
     off = degrees_between(actual, expected)
     names = {(1.0, 0.0, 0.0): "the x axis", (0.0, 1.0, 0.0): "the y axis", Z_AXIS: "the z axis"}
     name = names.get(axis, f"the direction {point(axis)}")
@@ -96,7 +99,7 @@ def axis_along(
     if not fine:
         message += f"; it should point along {point(expected)} ({in_degrees(off)} off)"
     joint = robot.parent_joints.get(link)
-    origin = joint.origin if joint is not None else None
+    origin = joint.origin if joint else None
     at = place(origin.location, "rpy") if origin is not None else None
     at = at or place(robot.link(link).location)
     return judged(fine, message, actual, expected, tolerance, "deg", at=at)
@@ -130,10 +133,12 @@ def turns_about_itself(
         )
     joint = turning_joint(robot, link, base)
     T_joint_wheel = placed(robot, link, visual, joint.child).pose
-    turning, wheel_axis = robot.axis(joint), T_joint_wheel.rotate((0.0, 0.0, 1.0))
+    turning = robot.axis(joint)
+    wheel_axis = T_joint_wheel.rotate((0.0, 0.0, 1.0))
     tilt = min(degrees_between(turning, wheel_axis), 180.0 - degrees_between(turning, wheel_axis))
     away = hypot(*cross(turning, T_joint_wheel.translation))
-    at, detail = place(joint.axis_location, "xyz") or joint.location, f" (joint {joint.name!r})"
+    at = place(joint.axis_location, "xyz") or joint.location
+    detail = f" (joint {joint.name!r})"
     if tilt > angle + SLACK:
         message = (
             f"the joint axis of {link!r} is {in_degrees(tilt)} off the cylinder's axis; they "
@@ -154,7 +159,7 @@ def turns_about_itself(
 def _as_turning(robot: Configuration, link: str) -> Configuration:
     """Return the robot with the parent joint of a link continuous."""
     joint = robot.parent_joints.get(link)
-    if joint is None:
+    if not joint:
         return robot
     known = {key: part for key, part in joint.unresolved.items() if key != "@type"}
     turning = joint.known._replace(type="continuous", unresolved=known)

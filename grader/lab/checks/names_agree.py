@@ -32,6 +32,7 @@ _Causes = Annotated[
 ]
 _OF_START = "controller-started"  # the rule of controllers that no spawner starts
 _MAX_IN_MESSAGE = 3  # mistakes, and places of each
+_Line = tuple[str | int, ...]
 
 
 def names_agree(
@@ -91,15 +92,15 @@ def names_agree(
         cause = f"cannot determine statically whether the names of {of} agree"
         raise NotDecided(f"{cause}: {reason}", cause)
     count = agreement.counts.get(of)
-    words = f" ({count.words})" if count is not None and count.words else ""
+    words = f" ({count.words})" if count and count.words else ""
     return passed(f"the names of {of} agree{words}")
 
 
-def _wrong_lines(submission: Submission, families: Sequence[str]) -> set[tuple[str | int, ...]]:
+def _wrong_lines(submission: Submission, families: Sequence[str]) -> set[_Line]:
     """Return the files and lines where names of families, or the robot, are wrong."""
     from grader.workspace.rules.reading import wrong_names  # late: as above
 
-    lines: set[tuple[str | int, ...]] = set()
+    lines: set[_Line] = set()
     for family in FAMILIES:
         if family in families:
             names = wrong_names(submission.workspace, family, submission.lab_packages.values())

@@ -3,16 +3,17 @@
 It says measured against expected, the difference, its unit and frame.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import Literal, NamedTuple
 
+from grader.base.grouping import Strings, StringsByName
 from grader.base.quantities import SLACK, in_degrees, in_millimetres, point, within
 from grader.base.source import LazyLocation, Location
 from grader.base.transforms import Vector
 
 Status = Literal["passed", "failed", "skipped", "pending", "errored"]
-_Measured = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None
+_Measured = bool | float | str | tuple[float, ...] | Strings | StringsByName | None
 _AnyPlace = Location | LazyLocation | None
 
 _SIDES = ("too large", "too small")
@@ -26,7 +27,9 @@ _DIRECTIONS = (
 )
 _UNITS = ((1000.0, "millimetres"), (100.0, "centimetres"))
 # The causes of failures that every check has; an outcome without one is of the first.
-WRONG, MISSING, SLIP = "wrong", "missing", "slip"
+WRONG = "wrong"
+MISSING = "missing"
+SLIP = "slip"
 
 
 class Outcome(NamedTuple):
@@ -59,9 +62,8 @@ class Outcome(NamedTuple):
     mistake: str = ""
     # the message of the file's problem that it reports, or in a few words what is in doubt
     problem: str = ""
-    absent: tuple[
-        str, ...
-    ] = ()  # what is not built yet, of a failure that is due to that alone: "lidar", "package"
+    # what is not built yet, of a failure that is due to that alone: "lidar", "package"
+    absent: Sequence[str] = ()
     # one of the causes of failures that the check declares, by which a rubric's feedback is chosen
     cause: str = ""
 
@@ -96,7 +98,7 @@ def _is_value(value: object) -> bool:
     return value is None or _is_text(value) or _is_number(value)
 
 
-_VALID: Mapping[str, Callable[[object], bool]] = {
+_VALID = {
     "message": _is_text,
     "measured": _is_value,
     "expected": _is_value,
@@ -248,7 +250,7 @@ def how_far_off(outcome: Outcome) -> float | None:
     actual, expected = (
         one if isinstance(one, tuple) else (one,) for one in (outcome.measured, outcome.expected)
     )
-    pairs = [*zip(actual, expected, strict=False)]
+    pairs = list(zip(actual, expected, strict=False))
     numbers = [
         abs(a - b) for a, b in pairs if isinstance(a, float | int) and isinstance(b, float | int)
     ]

@@ -49,7 +49,8 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
     manifest = package.needed_manifest()
     fine = manifest.name == name
     if manifest.refusals and (fine or manifest.name is None):
-        problem, count = manifest.refusals[0], len(manifest.refusals)
+        problem = manifest.refusals[0]
+        count = len(manifest.refusals)
         more = f" (and {count - 1} more)" if count > 1 else ""
         return failed(
             problem.message + more, problem.location, problem=problem.message, cause="refused"
@@ -57,11 +58,12 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
     message = f"the package is named {manifest.name!r}; it should be named {name!r}"
     if fine:
         message = f"the package is valid and named {name!r}"
-    setup, registered = package.installation, package.registered
-    if fine and setup is not None and registered and name not in registered:
+    setup = package.installation
+    registered = package.registered
+    if fine and setup and registered and name not in registered:
         # ament_index finds a package by its marker. colcon adds one for the name in package.xml,
         # but no file goes below that name.
-        others = enumerated([repr(other) for other in registered])
+        others = enumerated(map(repr, registered))
         message = f"package.xml names the package {name!r}, but setup.py registers it as {others}"
         at = next(copy.at for copy in setup.copies if copy.target.startswith(RESOURCE_INDEX))
         return failed(message, setup.location(at))
@@ -131,9 +133,9 @@ def installs_files(package: Package, *, files: list[str], despite_errors: bool =
     def is_wanted(path: str) -> bool:
         return any(fnmatch(path, pattern) for pattern in files)
 
-    matching = [*filter(is_wanted, package.tree.files)]
+    matching = list(filter(is_wanted, package.tree.files))
     if not matching:
-        patterns = enumerated([repr(pattern) for pattern in files], word="or")
+        patterns = enumerated(map(repr, files), word="or")
         raise MissingElement(
             "file", files[0], message=f"the package has no file that matches {patterns}"
         )

@@ -4,10 +4,12 @@ They are also measured on the robot.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from math import dist
 from typing import Any, Literal
 
 from grader.base.errors import MissingElement, NotDecided, RubricError
+from grader.base.grouping import as_list
 from grader.base.names import closest, similar_there
 from grader.base.text import enumerated, quoted
 from grader.base.toml_types import Content, NonNegative, Scalar
@@ -19,13 +21,14 @@ from grader.ros.launch.launch_model import ParameterValue
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Cylinder, Joint, Sphere
+from grader.ros.urdf.model import Cylinder, Sphere
 from grader.ros.urdf.visuals import placed
 from grader.workspace.model.workspace import Workspace
 
 _Measure = Literal["radius", "length", "distance", "lower", "upper", "velocity", "effort"]
 _EXACT = 1e-6
 _DIGITS = 6  # after the point, as a measure has rounding errors
+_Scalars = list[Scalar] | None
 
 
 def parameter_is(
@@ -35,8 +38,8 @@ def parameter_is(
     node: str,
     parameter: str,
     value: Content | None = None,
-    one_of: list[Scalar] | None = None,
-    has: list[Scalar] | None = None,
+    one_of: _Scalars = None,
+    has: _Scalars = None,
     measure: _Measure | None = None,
     links: list[str] | None = None,
     tolerance: NonNegative = _EXACT,
@@ -75,11 +78,16 @@ def parameter_is(
     except MissingElement:
         if not where_given:
             raise
-        meant = _measured_if_there(submission, measure, links) if measure is not None else value
+        meant = value
+        if measure is not None:
+            meant = None
+            with suppress(MissingElement):
+                meant = measured(submission, measure, links or [])
         other = _written_otherwise(submission, parameter, meant, tolerance)
-        if other is None:
+        if not other:
             return passed(f"nothing gives {parameter} to {node}")
-        parameter_value, said = other, f"a parameter file has {parameter} ="
+        parameter_value = other
+        said = f"a parameter file has {parameter} ="
     if isinstance(parameter_value.value, Unknown):
         cause = f"the parameter {parameter} of {node} cannot be determined statically"
         raise NotDecided(f"{cause}: {parameter_value.value.reason}", cause)
@@ -89,7 +97,7 @@ def parameter_is(
     wanted, fits = _compare_value(actual, value, one_of, has, tolerance)
     message = f"{said} {_text(actual)}"
     if measure is not None:
-        wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
+        wanted += f", the {measure} of {enumerated(map(quoted, links or []))} in the robot"
     unknown = submission.workspace.launches.unknown_includes
     if not fits and unknown:
         cause = "cannot determine statically which arguments a launch file gets"
@@ -100,21 +108,23 @@ def parameter_is(
 def _compare_value(
     actual: Any,
     value: Content | None,
-    one_of: list[Scalar] | None,
-    has: list[Scalar] | None,
+    one_of: _Scalars,
+    has: _Scalars,
     tolerance: float,
 ) -> tuple[str, bool]:
     """Return what a value should be, in words, and whether it is so."""
-    wanted, fits = "", True
+    wanted = ""
+    fits = True
     if value is not None:
         shown = round(value, _DIGITS) if isinstance(value, float) else value
-        wanted, fits = f"should be {_text(shown)}", _equal(actual, value, tolerance)
+        wanted = f"should be {_text(shown)}"
+        fits = _equal(actual, value, tolerance)
     if one_of is not None:
-        wanted = f"should be {enumerated([*map(_text, one_of)], word='or')}"
+        wanted = f"should be {enumerated(map(_text, one_of), word='or')}"
         fits = _has(one_of, actual, tolerance)
     if has is not None:
-        items = actual if isinstance(actual, list) else [actual]
-        wanted = f"should have {enumerated([*map(_text, has)])}"
+        items = as_list(actual)
+        wanted = f"should have {enumerated(map(_text, has))}"
         fits = all(_has(items, expected, tolerance) for expected in has)
     return wanted, fits
 
@@ -130,18 +140,9 @@ def _value_or_default(
         return f"{quoted(node)} gets {parameter} =", find_value(submission, node, parameter)
     except MissingElement:
         default = submission.default_value(node, parameter) if or_default else None
-        if default is None:
+        if not default:
             raise
         return f"{quoted(node)} uses the default {parameter} =", default
-
-
-def _measured_if_there(
-    submission: Submission, measure: _Measure, links: list[str] | None
-) -> float | None:
-    try:
-        return measured(submission, measure, links or [])
-    except MissingElement:
-        return None
 
 
 def _written_otherwise(
@@ -195,7 +196,7 @@ def find_value(submission: Submission, node: str, parameter: str) -> ParameterVa
 
 def _explain_nothing_given(workspace: Workspace, node: str) -> NotDecided | MissingElement:
     """Return the error of a node that nothing gives parameters to."""
-    for _, other in workspace.launches.nodes:
+    for other in workspace.launches.nodes:
         is_own = workspace.find_package(other) is not None
         if (is_own or other.parameters) and workspace.code.find_name(other) is None:
             cause = "the name of a node is only in its program"
@@ -254,7 +255,7 @@ def measured(submission: Submission, measure: _Measure, links: list[str]) -> flo
     Raises MissingElement for a link that is not there.
     """
     robot = submission.needed_urdf().robot
-    if robot is None:
+    if not robot:
         raise MissingElement(
             "robot", "", message="ROS 2 cannot read the file, so there is no robot"
         )
@@ -291,7 +292,7 @@ def _place(robot: Configuration, link: str, relative_to: str) -> Vector:
     For another link, return where its frame is.
     """
     joint = robot.parent_joints.get(link)
-    if joint is not None and joint.type == "continuous" and robot.robot.link(link).visuals:
+    if joint and joint.type == "continuous" and robot.robot.link(link).visuals:
         visual = main_visual(robot, link)
         if isinstance(visual.geometry, Cylinder | Sphere):
             return placed(robot, link, visual, relative_to).pose.translation
@@ -310,10 +311,10 @@ def _measures(robot: Configuration, links: list[str]) -> Iterator[tuple[str, Cal
                 yield "length", lambda: length
             case Sphere(radius=radius):
                 yield "radius", lambda: radius
-    joint: Joint | None = next(
+    joint = next(
         (moving for moving in reversed(robot.chain(links[0])) if moving.type != "fixed"), None
     )
-    if joint is not None and joint.limit is not None:
+    if joint and joint.limit is not None:
         limit = joint.limit
         yield from (("lower", lambda: limit.lower), ("upper", lambda: limit.upper))
         yield from (("velocity", lambda: limit.velocity), ("effort", lambda: limit.effort))

@@ -21,7 +21,7 @@ ABOUT = {
 }
 
 _ALONG = 0.9  # the least cosine of the angle between two vectors that count as one direction
-_NOT_TURNED: Vector = (0.0, 0.0, 0.0)
+_NOT_TURNED = (0.0, 0.0, 0.0)
 _ANY_ANGLE = 180.0  # degrees: no two orientations are farther apart
 _ANY_AXIS = 90.0  # degrees: no two lines are farther apart
 
@@ -47,7 +47,8 @@ def frame_at(
             is given.
         angle: How far the orientation may be off, in degrees; with 180, it is not checked.
     """
-    pose, at = robot.pose(link, relative_to=relative_to), origin_place(robot, link)
+    pose = robot.pose(link, relative_to=relative_to)
+    at = origin_place(robot, link)
     position = measured_point(
         f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at
     )
@@ -95,7 +96,7 @@ def centre_at(
     pose = placed(robot, link, visual, relative_to).pose
     actual = pose.translation
     loose = _loose_joint(robot, link, relative_to) if rigid else None
-    if loose is not None:
+    if loose:
         return loose
     at = _origin_by(robot, link, visual, relative_to, minus(actual, xyz)) or place(visual.location)
     position = measured_point(
@@ -116,7 +117,7 @@ def _with_orientation(
 
     The orientation may be at most `angle` degrees off.
     """
-    if placed.status == "passed" and at is not None and at.attribute == "xyz":
+    if placed.status == "passed" and at and at.attribute == "xyz":
         at = at._replace(attribute="rpy")
     return measured_turn(placed, turned, angle, wanted, at)
 
@@ -128,10 +129,11 @@ def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome |
     """
     path = robot.between(relative_to, link)
     loose = next((joint for joint in path if joint.type != "fixed"), None)
-    if loose is None:
+    if not loose:
         return None
-    parent_joint, detail = robot.parent_joints.get(link), f" (joint {loose.name!r})"
-    if parent_joint is not None and parent_joint in path and loose is not parent_joint:
+    parent_joint = robot.parent_joints.get(link)
+    detail = f" (joint {loose.name!r})"
+    if parent_joint and parent_joint in path and loose is not parent_joint:
         reason = f"which moves: a joint above it is {loose.type}; it should be fixed"
         at = place(parent_joint.location, "link", "parent")
         message = f"{link!r} is a child of {parent_joint.parent!r}, {reason}"
@@ -152,7 +154,8 @@ def _origin_by(
     if relative_to == link:
         return place(visual.origin.location, "xyz") or place(visual.location)
     T_relative_link = robot.pose(link, relative_to=relative_to)
-    moved, error = unit(T_relative_link.rotate(visual.origin.xyz)), unit(off)
+    moved = unit(T_relative_link.rotate(visual.origin.xyz))
+    error = unit(off)
     if moved is not None and error is not None and abs(dot(moved, error)) > _ALONG:
         return place(visual.origin.location, "xyz")
     return origin_place(robot, link) or place(visual.location)

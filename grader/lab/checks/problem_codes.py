@@ -18,7 +18,7 @@ from grader.workspace.rules.rule_table import RULES
 
 _OF_ROBOT = ("URDF", "XACRO")
 _OF_PACKAGES = ("PKG", "LCH", "RVZ", "REF")
-_GROUPS = (*_OF_ROBOT, *_OF_PACKAGES)  # what the codes of these problems begin with
+_GROUPS = _OF_ROBOT + _OF_PACKAGES  # what the codes of these problems begin with
 _KINDS = {kind.code: kind for kind in EVERY_KIND if kind.code.startswith(_GROUPS)}
 _NAMES = [*_KINDS, *_OF_PACKAGES, *RULES]
 _KNOWN = Constraint(
@@ -56,7 +56,7 @@ def without_problems(urdf: Reading, submission: Submission, *, problems: _Names)
     if open_ones:
         first = open_ones[0]
         return pending(f"{first.message}; needs manual grading", first.message, first.location)
-    if urdf.robot is None:
+    if not urdf.robot:
         raise MissingElement(
             "robot", "", message="ROS 2 cannot read the file, so there is no robot"
         )
@@ -103,7 +103,7 @@ def _why_open(submission: Submission, names: Sequence[str]) -> Iterator[str]:
     if any(name.startswith("PKG") for name in names):
         for package in submission.lab_packages.values():
             setup = package.installation
-            if setup is not None and setup.doubt is not None:
+            if setup and setup.doubt is not None:
                 yield f"{setup.doubt.reason} (line {setup.doubt.at.line} of {setup.file})"
     if any(name.startswith("LCH") for name in names):
         yield from filter(None, [submission.workspace.launches.unknown_nodes])
@@ -125,7 +125,8 @@ ABOUT = {
 
 
 def _fail_with_problems(reported: Sequence[Problem]) -> Outcome:
-    first, more = reported[0], len(reported) - 1
+    first = reported[0]
+    more = len(reported) - 1
     others = f" (and {counted(more, 'more such problem')})" if more else ""
     outcome = failed(
         f"{first.label}: {first.message}{others}", first.location, problem=first.message

@@ -3,9 +3,9 @@
 They say how its links move, and because of which joint.
 """
 
-from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from math import asin, degrees, dist, inf, isfinite, pi, sqrt
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 from weakref import WeakKeyDictionary
 
 from grader.base.errors import MissingElement, NotDecided, RubricError
@@ -20,18 +20,15 @@ from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint, Robot
 
-
-def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
-    """The joints are paired by name, or by their order along the chains to the links."""
-    if arguments.get("match") == "order":
-        return ()
-    return ("joints renamed",)
+_Positions = tuple[float, ...]  # of joints
+_Joints = dict[str, Joint]  # by name
 
 
 ABOUT = {
     "kinematics_match_reference": About(
         ("joint/origin",),
-        breaks_under=_breaks_under,
+        # They are paired by name, or by their order along the chains to the links.
+        breaks_under=lambda given: () if given.get("match") == "order" else ("joints renamed",),
     )
 }
 
@@ -139,9 +136,9 @@ def _pair_joints(
                 f"{len(others)}"
             )
             return failed(message, detail=f" (joints {_list_names(own_movers) or 'none'})")
-        joints = [*zip(own_movers.values(), others.values(), strict=True)]
+        joints = list(zip(own_movers.values(), others.values(), strict=True))
     else:
-        _check_names(robot, [*others])
+        _check_names(robot, list(others))
         joints = [(robot.joint(name), joint) for name, joint in others.items()]
         for name, joint in own_movers.items():
             if name not in others:
@@ -149,13 +146,13 @@ def _pair_joints(
                 return failed(message, joint.location, detail=f" (joint {quoted(name)})")
     for joint, expected in joints:
         failure = _wrong_type(joint, expected)
-        if failure is not None:
+        if failure:
             return failure
     return joints
 
 
-def _list_names(names: Sequence[str] | dict[str, Joint]) -> str:
-    return enumerated([*map(quoted, names)], _MAX_JOINTS)
+def _list_names(names: Sequence[str] | _Joints) -> str:
+    return enumerated(map(quoted, names), _MAX_JOINTS)
 
 
 def _check_names(robot: Configuration, names: Sequence[str]) -> None:
@@ -164,9 +161,7 @@ def _check_names(robot: Configuration, names: Sequence[str]) -> None:
     if not missing:
         return
     known = tuple(joint.name for joint in robot.robot.joints)
-    message = (
-        f"there is no joint {enumerated([*map(quoted, missing)], _MAX_JOINTS, 'and no joint')}"
-    )
+    message = f"there is no joint {enumerated(map(quoted, missing), _MAX_JOINTS, 'and no joint')}"
     guess = similar_there(missing[0], known) or f"; the file has: {_list_names(known) or 'none'}"
     raise MissingElement("joint", missing[0], known, message=message, detail=guess)
 
@@ -195,7 +190,7 @@ class _Offset(NamedTuple):
     link: str
     distance: float
     angle: float
-    positions: tuple[float, ...]
+    positions: _Positions
 
     @property
     def text(self) -> str:
@@ -238,7 +233,8 @@ class _MotionComparison(NamedTuple):
                 f"{self._links_text()} as in the reference at {counts}: at most {worst.text} off"
             )
         wrong = dict.fromkeys(index for index, offset in alone if not self._is_within(offset))
-        cause, at = "", self.robots[0].link(worst.link).location
+        cause = ""
+        at = self.robots[0].link(worst.link).location
         if not self._is_within(zero):
             if zero is not worst:
                 cause = f"; it is already {zero.text} off with all joints at 0"
@@ -259,11 +255,11 @@ class _MotionComparison(NamedTuple):
             measured=worst.distance, expected=0.0, tolerance=self.tolerance, unit="m"
         )
 
-    def _offset(self, positions: tuple[float, ...]) -> _Offset:
+    def _offset(self, positions: _Positions) -> _Offset:
         """Return the largest offset at these positions of the joints."""
         pairs = zip(self.joints, positions, strict=True)
         own_positions = {
-            joint.name: position for (joint, _), position in pairs if joint.mimic is None
+            joint.name: position for (joint, _), position in pairs if not joint.mimic
         }  # a mimic joint follows
         posed = self.robots[0].at(own_positions)
         offsets = []
@@ -273,7 +269,7 @@ class _MotionComparison(NamedTuple):
             offsets.append(_Offset(name, distance, _angle_between(pose, wanted), positions))
         return max(offsets, key=lambda offset: (self._times(offset), offset.distance))
 
-    def _reference_poses(self, positions: tuple[float, ...]) -> tuple[Transform, ...]:
+    def _reference_poses(self, positions: _Positions) -> tuple[Transform, ...]:
         """Return the poses of the reference's links.
 
         They are computed once for all robots that are compared with it.
@@ -311,9 +307,11 @@ class _MotionComparison(NamedTuple):
         moved = []
         for (joint, _), position in zip(self.joints, offset.positions, strict=True):
             if joint.type == "prismatic":
-                value, unit = position, "m"
+                value = position
+                unit = "m"
             else:
-                value, unit = degrees(position), "degrees"
+                value = degrees(position)
+                unit = "degrees"
             if position:
                 moved.append(f"{quoted(joint.name)} at {point((value,))} {unit}")
         return enumerated(moved, _MAX_JOINTS)
@@ -327,7 +325,7 @@ def _angle_between(one: Transform, other: Transform) -> float:
     return degrees(2.0 * asin(min(dist(one.rotation, other.rotation) / (2.0 * sqrt(2.0)), 1.0)))
 
 
-def _find_movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, Joint]:
+def _find_movers(robot: Configuration, base: str, links: Iterable[str]) -> _Joints:
     """Return the joints that move links relative to a base by their names.
 
     They are along the chain to each link.
@@ -335,7 +333,7 @@ def _find_movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[
     Instead of a mimic joint it is the joint that leads it. Raises MissingElement, and NotDecided
     where a mimic is not known.
     """
-    movers: dict[str, Joint] = {}
+    movers: _Joints = {}
     for link in links:
         chain = robot.between(base, link)
         if len(chain) > _MAX_CHAIN:
@@ -345,18 +343,18 @@ def _find_movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[
             )
         for joint in chain:
             leader = _find_leader(robot.known, joint.known)
-            if leader is not None and leader.type != "fixed":
+            if leader and leader.type != "fixed":
                 movers.setdefault(leader.name, leader)
     return movers
 
 
 def _find_leader(robot: Robot, joint: Joint) -> Joint | None:
     """Return the joint that leads a mimic joint, perhaps over others; None where there is none."""
-    passed: set[str] = set()
+    passed = set()
     while True:
         if "mimic" in joint.unresolved:
             joint.unresolved["mimic"].check()
-        if joint.mimic is None:
+        if not joint.mimic:
             return joint
         passed.add(joint.name)
         if joint.mimic.joint in passed or not robot.has_joint(joint.mimic.joint):
@@ -364,7 +362,7 @@ def _find_leader(robot: Robot, joint: Joint) -> Joint | None:
         joint = robot.joint(joint.mimic.joint)
 
 
-def _single_positions(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[float, ...]]]:
+def _single_positions(joints: Sequence[Joint]) -> Iterator[tuple[int, _Positions]]:
     """Yield positions with one joint at an end of its range, or between, and the others at 0.
 
     Each comes with its index.
@@ -377,14 +375,14 @@ def _single_positions(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[floa
             yield index, tuple(positions)
 
 
-def _random_positions(joints: Sequence[Joint], count: int) -> list[tuple[float, ...]]:
+def _random_positions(joints: Sequence[Joint], count: int) -> list[_Positions]:
     """Return random positions within the ranges of joints, always the same ones."""
     from random import Random  # late: few rubrics need it, and it takes long to import
 
     random = Random(_SEED)  # noqa: S311  not for secrets
     ranges = [_joint_range(joint) for joint in joints]
 
-    def positions() -> tuple[float, ...]:
+    def positions() -> _Positions:
         return tuple(low + (high - low) * random.random() for low, high in ranges)
 
     return [positions() for _ in range(count)]
@@ -398,6 +396,6 @@ def _joint_range(joint: Joint) -> tuple[float, float]:
     if joint.type == "continuous":
         return -pi, pi
     limit = joint.limit
-    if not joint.has_position or limit is None or not isfinite(limit.upper - limit.lower):
+    if not joint.has_position or not limit or not isfinite(limit.upper - limit.lower):
         return 0.0, 0.0
     return limit.lower, limit.upper

@@ -61,6 +61,7 @@ CHECKS = (
     "package_build.setup_imports",
     "launch.launch_found",
     "launch.node_runs",
+    "commands.starts",
     "launch.launch_finds_files",
     "launch.launch_complete",
     "launched_graph.connects",
@@ -69,6 +70,10 @@ CHECKS = (
     "launched_graph.reaches",
     "simulation.world_has",
     "lookups.looks_up",
+    "own_interfaces.interface_has",
+    "node_code.publishes",
+    "node_code.serves_action",
+    "node_code.uses_parameter",
     "rviz.rviz_found",
     "rviz.rviz_fixed_frame",
     "rviz.rviz_shows_robot",
@@ -77,12 +82,24 @@ CHECKS = (
     "names_agree.names_agree",
     "parameters.parameter_is",
     "set_parameters.takes_parameters",
+    "recordings.recording_found",
+    "recordings.recorded_topic",
+    "recordings.recorded_value",
+    "recorded_motion.drove",
+    "recorded_motion.wheels_agree",
+    "recorded_frames.recorded_frames_agree",
+    "recorded_frames.recorded_tree",
     "manual.answered",
     "manual.evidence_shown",
+    "manual.manual",
 )
 
 # Those that ask what connects after a launch.
 GRAPH_CHECKS = frozenset({"connects", "publishes_transform", "topic_has_type", "reaches"})
+# Those that read recordings.
+RECORDING_CHECKS = frozenset(
+    place.partition(".")[2] for place in CHECKS if place.startswith("record")
+)
 _PLACES = {place.partition(".")[2]: place for place in CHECKS}
 
 

@@ -1,10 +1,11 @@
 """Checks of an RViz file: that it is there, its fixed frame, and that it shows the robot."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.names import did_you_mean
+from grader.base.names import did_you_mean, last_part
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import About
@@ -45,11 +46,9 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
     """
     opened = _read_launch(package, launch)
     path = _rviz_path(package, name, opened)
-    if path.rpartition("/")[2] == name or (
-        opened is not None and path == package.rviz_opened(opened)
-    ):
+    if last_part(path) == name or (opened and path == package.rviz_opened(opened)):
         return passed(f"the RViz file is {path}")
-    if opened is not None and (
+    if opened and (
         opened.syntax or opened.unknown or not all(file.is_certain for file in opened.named("rviz"))
     ):
         message = f"cannot determine statically whether the launch file opens {path}"
@@ -77,11 +76,12 @@ def rviz_fixed_frame(
     if where_there and not package.rviz_files:
         return passed(_NO_FILE)
     rviz = _read_rviz(package, name, launch)
-    if rviz.conflict is not None:
+    if rviz.conflict:
         return failed(rviz.conflict.message, rviz.conflict.location)
     opened = _read_launch(package, launch)
     frames = _frames_of_link(opened, frame)
-    actual, expected = rviz.fixed_frame, next(filter(None, frames), frame)
+    actual = rviz.fixed_frame
+    expected = next(filter(None, frames), frame)
     if not actual:
         return failed(
             f"the RViz file sets no Fixed Frame; it should be {expected!r}", rviz.frame_location
@@ -89,7 +89,8 @@ def rviz_fixed_frame(
     if None in frames and actual.endswith(frame):
         raise NotDecided(_UNKNOWN_PREFIX)
     links = _known_frames(submission, opened)
-    message, detail = f"the Fixed Frame is {actual!r}", ""
+    message = f"the Fixed Frame is {actual!r}"
+    detail = ""
     if actual not in frames:
         message += f"; it should be {expected!r}"
         prefix = expected.removesuffix(frame)
@@ -112,7 +113,7 @@ def _known_frames(submission: Submission, opened: "Launch | None") -> list[str]:
     """
     robot = submission.robot
     frames: list[str] = []
-    if robot is not None and not robot.rejected:
+    if robot and not robot.rejected:
         for link in robot.links:
             frames += filter(None, _frames_of_link(opened, link.name))
     return frames
@@ -168,9 +169,7 @@ def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "")
             only `name` decides.
     """
     rviz = _read_rviz(package, name, launch)
-    displays_of_kind = [
-        display for display in rviz.displays if display.kind == kind.rpartition("/")[2]
-    ]
+    displays_of_kind = [display for display in rviz.displays if display.kind == last_part(kind)]
     owner = kind.rpartition("/")[0]
     faults = [
         _class_of_ros1(display) or _why_other_class(display, owner) or _why_off(display)
@@ -206,7 +205,8 @@ def _class_of_ros1(display: "Display") -> str:
 def _why_other_class(display: "Display", package: str) -> str:
     if package in ("", display.package):
         return ""
-    class_of_display, wanted = f"{display.package}/{display.kind}", f"{package}/{display.kind}"
+    class_of_display = f"{display.package}/{display.kind}"
+    wanted = f"{package}/{display.kind}"
     return f"the class of the {display.kind} display is {class_of_display}; it should be {wanted}"
 
 
@@ -216,13 +216,13 @@ def _why_off(display: "Display") -> str:
     return f"the {display.kind} display is off{': its group is off' if display.is_enabled else ''}"
 
 
-def _frames_of_link(opened: "Launch | None", link: str) -> tuple[str | None, ...]:
-    if opened is not None:
+def _frames_of_link(opened: "Launch | None", link: str) -> Sequence[str | None]:
+    if opened:
         return opened.list_frames(link)
     return (link,)
 
 
-class _Verdict(NamedTuple):
+class _Verdict(Named):
     """Whether a RobotModel display shows the robot, and if not, why."""
 
     status: Status
@@ -245,12 +245,10 @@ def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> _Verd
     if fault:
         return _Verdict("failed", fault, "display")
     source = model.node.get("Description Source")
-    if source is not None and source.text == "File":
+    if source and source.text == "File":
         return _judge_file(model, topic)
     value = model.node.get("Description Topic", "Value") or model.node.get("Description Topic")
-    verdict = _judge_topic(
-        (value.text or "" if value is not None else "").strip(), topic, _Names.of(opened)
-    )
+    verdict = _judge_topic((value.text or "" if value else "").strip(), topic, _Names.of(opened))
     if verdict.status != "passed":
         return verdict
     return _judge_prefix(model, opened)
@@ -261,8 +259,7 @@ def _judge_file(model: "Display", topic: str) -> _Verdict:
     path = model.file
     if not path or model.reads_file_of_one_machine:
         where = f"the file {path!r} of one machine" if path else "a file, and names none"
-        message = f"the RobotModel display reads {where}; it should read {topic!r}"
-        return _Verdict("failed", message)
+        return _Verdict("failed", f"the RobotModel display reads {where}; it should read {topic!r}")
     return _Verdict(
         "pending",
         "the RobotModel display reads a local file instead of a topic; needs manual grading",
@@ -274,11 +271,14 @@ def _judge_topic(actual: str, topic: str, names: "_Names") -> _Verdict:
 
     This is known by the nodes that are started or else by the topic.
     """
-    described, shown = names.described, names.shown(actual)
+    described = names.described
+    shown = names.shown(actual)
     if described is None or (described and None in shown):
         reason = "the topics of the nodes are known only at run time; needs manual grading"
         return _Verdict("pending", reason)
-    unheard, cause, location = names.unheard, "nodes", names.unheard_at
+    unheard = names.unheard
+    cause = "nodes"
+    location = names.unheard_at
     if actual and described and (described != {topic} or shown != {actual}):
         if not described & shown:
             unheard = (
@@ -290,11 +290,13 @@ def _judge_topic(actual: str, topic: str, names: "_Names") -> _Verdict:
             fault = f"reads the topic {actual!r}; it should read"
         else:
             fault = "has no Description Topic; it should be"
-        unheard, cause, location = f"the RobotModel display {fault} {topic!r}", "", None
+        unheard = f"the RobotModel display {fault} {topic!r}"
+        cause = ""
+        location = None
     return _Verdict("failed", unheard, cause, location) if unheard else _Verdict("passed")
 
 
-class _Names(NamedTuple):
+class _Names(Named):
     """The nodes that a launch file certainly starts.
 
     It says who publishes the robot and its joints, and who shows it.
@@ -308,13 +310,15 @@ class _Names(NamedTuple):
     def of(cls, opened: "Launch | None") -> "_Names":
         """Return the nodes of a launch file; none if other ones may be started as well."""
         if (
-            opened is None
+            not opened
             or opened.faults
             or opened.unknown
             or any(node.when is None for node in opened.nodes)
         ):
             return cls()
-        publishers, joints, viewers = [], [], []
+        publishers = []
+        joints = []
+        viewers = []
         for node in opened.nodes:
             if not node.when:
                 continue
@@ -361,7 +365,8 @@ class _Names(NamedTuple):
         if self._unheard is None:
             return ""
         name, source, reader = self._unheard
-        sent, read = {source.topic(name)}, {reader.topic(name)}
+        sent = {source.topic(name)}
+        read = {reader.topic(name)}
         return (
             f"{source.executable} publishes on {_listed(sent)}, but {reader.executable} reads "
             f"{_listed(read)}"
@@ -386,7 +391,7 @@ def _judge_prefix(model: "Display", opened: "Launch | None") -> _Verdict:
     It puts its TF Prefix and a slash before them.
     """
     node = model.node.get("TF Prefix")
-    written_prefix = node.text or "" if node is not None else ""
+    written_prefix = node.text or "" if node else ""
     # TFLinkUpdater::getLinkTransforms of rviz_default_plugins always adds the slash,
     # robot_state_publisher none.
     shown_prefix = f"{written_prefix}/" if written_prefix else ""
@@ -400,8 +405,7 @@ def _judge_prefix(model: "Display", opened: "Launch | None") -> _Verdict:
         f"the TF Prefix of the RobotModel display is {written_prefix!r}, "
         f"so it looks for frames like '{shown_prefix}LINK'; "
     )
-    reason = f"{message}robot_state_publisher publishes '{expected}LINK'"
-    return _Verdict("failed", reason, "nodes")
+    return _Verdict("failed", f"{message}robot_state_publisher publishes '{expected}LINK'", "nodes")
 
 
 def _read_launch(package: Package, launch: str) -> "Launch | None":
@@ -418,12 +422,12 @@ def _rviz_path(package: Package, name: str, opened: "Launch | None") -> str:
 
 def _read_rviz(package: Package, name: str, launch: str) -> "RvizFile":
     opened = _read_launch(package, launch)
-    package = package.owner_of_opened(opened) if opened is not None else package
+    package = package.owner_of_opened(opened) if opened else package
     path = _rviz_path(package, name, opened)
     rviz = package.rviz(path)
     if rviz.unread:
         raise NotDecided(rviz.unread, "the RViz file cannot be read")
-    if rviz.fault is not None:
+    if rviz.fault:
         raise MissingElement(
             "RViz file", path, message=rviz.fault.message, location=rviz.fault.location
         )

@@ -24,20 +24,22 @@ def takes_parameters(submission: Submission, *, refuses: bool = False) -> Outcom
     submission.needed_package()
     callbacks = parameter_callbacks(submission.workspace)
     if refuses:
-        does, at = "refuses values of its parameters", callbacks.refuses
+        does = "refuses values of its parameters"
+        at = callbacks.refuses
         reason = "a library may check them" if callbacks.is_generated else ""
         if callbacks.may_refuse:
             reason = "a condition may decide that its result is successful"
     else:
-        does, at = "is told when its parameters are set", callbacks.told
+        does = "is told when its parameters are set"
+        at = callbacks.told
         is_open = callbacks.is_generated or callbacks.is_read
         reason = "code may read them again and again" if is_open else ""
-    if at is not None:
+    if at:
         return passed(f"a node {does}")
     if reason:
         cause = f"cannot determine statically whether a node {does}"
         raise NotDecided(f"{cause}: {reason}", cause)
-    if callbacks.told is not None:
+    if callbacks.told:
         detail = ": its callback accepts all"
         return failed(f"no node {does}", callbacks.told, detail=detail, cause="accepts")
     return failed(f"no node {does}")

@@ -7,9 +7,11 @@ What cannot be determined is a fault that is not sure.
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from grader.base.names import closest
+from grader.base.grouping import StringsByName
+from grader.base.names import closest, last_part
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import MAX_NAMED, enumerated, quoted
 from grader.ros.installation.places import PREFIX
@@ -18,9 +20,10 @@ from grader.ros.xml.urdf_format import numbers_in
 if TYPE_CHECKING:
     from grader.lab.submission.submission import Submission
     from grader.ros.launch.launch_model import Launch, StartedNode
+    from grader.ros.nodes.node_facts import EndpointKind, Qos
     from grader.workspace.model.workspace import Workspace
 
-_VERBS: Mapping[str, str] = {
+_VERBS = {
     "publisher": "publishes",
     "subscription": "subscribes to",
     "service": "serves",
@@ -30,29 +33,30 @@ _VERBS: Mapping[str, str] = {
 }
 # Faults in the code of a node that do not keep it from opening what it opens.
 _HARMLESS = frozenset({"service-response", "entity-kept"})
-_CODE = (".py", ".cpp", ".hpp", ".h")
-_Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
+_Topics = Sequence[str] | StringsByName | None  # a table has their types
+_Names = Sequence[str] | None
 
 
-class Wanted(NamedTuple):
+class Wanted(Named):
     """What a rubric asks besides the nodes that are started.
 
     These are the arguments of the check node_runs.
     """
 
-    absent: Sequence[str] | None
-    remap: Mapping[str, str] | None
-    arguments: Sequence[str] | None
-    includes: Sequence[str] | None
+    absent: _Names
+    remap: StringsByName | None
+    arguments: _Names
+    includes: _Names
     publishes: _Topics
     subscribes: _Topics
     serves: _Topics = None
     calls: _Topics = None
-    spawns: Sequence[str] | None = None
-    active: Sequence[str] | None = None
+    spawns: _Names = None
+    active: _Names = None
+    qos: StringsByName | None = None
 
 
-class Fault(NamedTuple):
+class Fault(Named):
     """What is not as a rubric asks.
 
     If it is not `is_certain`, it says what may not be so, after "whether".
@@ -78,14 +82,14 @@ def find_faults(
     """
     workspace = submission.workspace
     launch = _with_node_names(launch, workspace)
-    faults: list[Fault | None] = [*_started_although(launch, wanted.absent or ())]
+    faults: list[Fault | None] = list(_started_although(launch, wanted.absent or ()))
     if wanted.remap or wanted.arguments:
         faults += [_ill_started(launch, names, wanted) for names in choices]
     faults += [_not_included(launch, end) for end in wanted.includes or ()]
     faults += _not_spawned(launch, wanted.spawns or ())
     faults += _not_opened(launch, workspace, wanted)
     faults += _not_active(launch, workspace, wanted.active or ())
-    return [fault for fault in faults if fault is not None]
+    return [fault for fault in faults if fault]
 
 
 def _with_node_names(launch: "Launch", workspace: "Workspace") -> "Launch":
@@ -104,8 +108,20 @@ def _not_active(launch: "Launch", workspace: "Workspace", names: Sequence[str]) 
     """Yield the nodes with a lifecycle that nothing activates."""
     if not names:
         return
-    from grader.workspace.api import LIFECYCLE_MANAGERS, are_nodes_activated, managed_nodes
+    from grader.workspace.api import (
+        LIFECYCLE_MANAGERS,
+        are_nodes_activated,
+        find_stuck_nodes,
+        managed_nodes,
+    )
 
+    wanted = {last_part(name) for name in names}
+    named = {node.location: node.node_name or "" for node in launch.nodes}
+    for stuck in find_stuck_nodes(workspace, launch):
+        name = named.get(stuck.node, "")
+        if name in wanted:
+            message = f"no event activates the node {quoted(name)}, which stays {stuck.state}"
+            yield Fault(message, stuck.waiting)
     are_activated = are_nodes_activated(workspace)
     if are_activated:
         return
@@ -113,7 +129,7 @@ def _not_active(launch: "Launch", workspace: "Workspace", names: Sequence[str]) 
     managed, is_known = managed_nodes(workspace, managers)
     is_known = is_known and are_activated is False
     for name in names:
-        if name.rpartition("/")[2] in managed:
+        if last_part(name) in managed:
             continue
         at = managers[0].location if managers else None
         if is_known and not launch.unknown:
@@ -134,6 +150,8 @@ def _not_opened(launch: "Launch", workspace: "Workspace", wanted: Wanted) -> Ite
         typed = names if isinstance(names, Mapping) else dict.fromkeys(names or (), "")
         for name, kind in typed.items():
             yield topics.find_fault(verb, name, kind)
+    for name, others in (wanted.qos or {}).items():
+        yield topics.find_quality_fault(name, others)
 
 
 def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]:
@@ -141,9 +159,8 @@ def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]
     for name in names:
         nodes = [node for node in launch.nodes if node.name == name]
         certain = next((node for node in nodes if node.when), None)
-        if certain is not None:
-            message = f"the launch file starts {name}; it should not"
-            yield Fault(message, certain.location, cause="")
+        if certain:
+            yield Fault(f"the launch file starts {name}; it should not", certain.location, cause="")
         elif nodes or launch.unknown:
             yield Fault(f"{name} is started", is_certain=False)
 
@@ -154,9 +171,9 @@ def _ill_started(launch: "Launch", names: Sequence[str], wanted: Wanted) -> Faul
     None of its name has the remappings and arguments.
     """
     findings = [(node, _find_fault(node, wanted)) for node in launch.nodes if node.name in names]
-    if not findings or any(fault is None and node.when for node, fault in findings):
+    if not findings or any(not fault and node.when for node, fault in findings):
         return None
-    faults = [fault for _, fault in findings if fault is not None]
+    faults = [fault for _, fault in findings if fault]
     # Whether a node without a fault is started is not known.
     is_complete = len(faults) == len(findings) and not launch.unknown
     if is_complete and all(fault.is_certain for fault in faults):
@@ -169,7 +186,8 @@ def _find_fault(node: "StartedNode", wanted: Wanted) -> Fault | None:
     if node.arguments is None:  # what launch files of other packages give their nodes is not listed
         return Fault("", is_certain=False)
     for name, to in (wanted.remap or {}).items():
-        actual, expected = node.topic(name), node.full_name(to)
+        actual = node.topic(name)
+        expected = node.full_name(to)
         if actual != expected:
             message = (
                 f"{node.executable} has the name {actual} for {quoted(name)}; it should be "
@@ -214,7 +232,8 @@ def _is_phrase(words: Sequence[str | None], phrase: Sequence[str]) -> bool:
 
 def _is_word(word: str | None, wanted: str) -> bool:
     """Return whether a word is another one: numbers by their value, paths by their ends."""
-    numbers, other = numbers_in(word or ""), numbers_in(wanted)
+    numbers = numbers_in(word or "")
+    other = numbers_in(wanted)
     is_path = word is not None and word.startswith(PREFIX) and word.endswith(f"/{wanted}")
     return word == wanted or is_path or (bool(numbers) and numbers == other)
 
@@ -252,11 +271,10 @@ def stopping_mistakes(workspace: "Workspace") -> "Mapping[str, Fault]":
 def fault_of_syntax(workspace: "Workspace", node: "StartedNode", package: str) -> Fault | None:
     """Return why Python cannot read the program of a node of a package; None if it can."""
     code = workspace.code.by_package.get(package)
-    for program in code.programs if code is not None else ():
+    for program in code.programs if code else ():
         syntax = program.syntax if program.name == node.executable else None
         if syntax is not None and syntax.is_certain:
-            message = f"Python cannot read the file: {syntax.message}"
-            return Fault(message, syntax.location)
+            return Fault(f"Python cannot read the file: {syntax.message}", syntax.location)
     return None
 
 
@@ -267,18 +285,18 @@ def _not_spawned(launch: "Launch", controllers: Sequence[str]) -> Iterator[Fault
     from grader.workspace.api import spawned_by  # late: as above
 
     spawned = spawned_by(launch)
-    shown = enumerated([quoted(name) for name in sorted(spawned.names)]) or "none"
+    shown = enumerated(map(quoted, sorted(spawned.names))) or "none"
     for name in controllers:
         if name in spawned.names:
             continue
         if spawned.is_known:
-            message, detail = f"no spawner starts {quoted(name)}", f"; spawners start {shown}"
-            yield Fault(message, spawned.first, detail)
+            message = f"no spawner starts {quoted(name)}"
+            yield Fault(message, spawned.first, f"; spawners start {shown}")
         else:
             yield Fault(f"a spawner starts {quoted(name)}", is_certain=False)
 
 
-class _NodeTopic(NamedTuple):
+class _NodeTopic(Named):
     """What a node opens; `name` is empty where it is not known, and `type` None."""
 
     name: str
@@ -286,8 +304,12 @@ class _NodeTopic(NamedTuple):
     type: str | None
     location: Location
     node: "StartedNode"
+    qos: "Qos"
     written: str = ""  # its name in the code, before remapping
     is_unused: bool = False
+
+
+_OpenedTopics = Sequence[_NodeTopic]
 
 
 class _NodeTopics:
@@ -300,7 +322,7 @@ class _NodeTopics:
         )
         from grader.workspace.graph.code_ends import opened_by
 
-        self._topics: list[_NodeTopic] = []
+        self._topics = []
         self._is_open = bool(launch.unknown) or any(unread_includes(workspace, launch))
         self._unread: list[Fault] = []  # of programs that cannot run, and so open nothing
         self._stopping = stopping_mistakes(workspace)
@@ -310,38 +332,63 @@ class _NodeTopics:
             if bridged is not None:
                 ends, is_known = bridged
                 self._is_open = self._is_open or not is_known
-            elif package is not None and self._may_run(node, workspace, package.name):
-                ends = [*opened_by(workspace, node)]
+            elif package and self._may_run(node, workspace, package.name):
+                ends = list(opened_by(workspace, node))
             else:
                 continue
             for end in ends:
                 self._is_open = self._is_open or not end.is_known
                 name = end.name or "" if end.is_known else ""
-                verb, opened = _VERBS[end.endpoint.kind], end.endpoint
-                topic = _NodeTopic(name, verb, opened.type, opened.location, node)
+                verb = _VERBS[end.endpoint.kind]
+                opened = end.endpoint
+                topic = _NodeTopic(name, verb, opened.type, opened.location, node, opened.qos)
                 topic = topic._replace(written=opened.name or "", is_unused=opened.is_unused)
                 self._topics.append(topic)
 
     def _may_run(self, node: "StartedNode", workspace: "Workspace", package: str) -> bool:
         """Return whether a node is read and may run; note why not, and what is not known of it."""
         code = workspace.code.by_package.get(package)
-        doubts = list(code.doubts) if code is not None else []
+        doubts = list(code.doubts) if code else []
         syntax = fault_of_syntax(workspace, node, package)
         own_nodes = workspace.code.find_all_nodes(node)
         paths = [own_node.location.path for own_node in own_nodes]
+        for own_node in own_nodes:  # its base class may be in another file
+            paths += [end.location.path for end in own_node.endpoints]
         mistake = next((self._stopping[path] for path in paths if path in self._stopping), None)
         runs = bool(own_nodes)
-        if syntax is not None:
+        if syntax:
             self._unread.append(syntax)
             at = syntax.at
-            doubts = [doubt for doubt in doubts if at is None or doubt.location.path != at.path]
+            doubts = [doubt for doubt in doubts if not at or doubt.location.path != at.path]
         elif not own_nodes or any(own_node.doubts for own_node in own_nodes):
             self._is_open = True
-        elif mistake is not None:
+        elif mistake:
             self._unread.append(mistake)
             runs = False
+        elif paths[0].endswith(".py") and workspace.code.has_other_nodes(node):
+            self._is_open = True  # in C++, any class of another package would count
         self._is_open = self._is_open or bool(doubts)
         return runs
+
+    def find_quality_fault(self, name: str, others: str) -> Fault | None:
+        """Return that an end of a topic does not connect to nodes of another quality of service."""
+        from grader.workspace.api import fault_with_others  # late: few rubrics ask
+
+        full_name = f"/{name.removeprefix('/')}"
+        ends = [topic for topic in self._topics if topic.name == full_name and topic.node.when]
+        for topic in ends:
+            kind: EndpointKind = "publisher" if topic.verb == "publishes" else "subscription"
+            fault = fault_with_others(kind, topic.qos, others)
+            if fault:
+                message = (
+                    f"{full_name} does not connect to nodes whose quality of service is "
+                    f"{quoted(others)}"
+                )
+                return Fault(message, topic.location, f": {fault}", cause="quality")
+        if ends:
+            return None
+        message = f"{'a' if self._is_open else 'no'} node opens {full_name}"
+        return Fault(message, is_certain=not self._is_open, cause="topic")
 
     def find_fault(self, verb: str, name: str, message_type: str) -> Fault | None:
         """Return that no node publishes, subscribes to, serves or calls a name with a type."""
@@ -368,10 +415,11 @@ class _NodeTopics:
 
 
 def _split_unused(
-    topics: Sequence[_NodeTopic], name: str, python_type: str
+    topics: _OpenedTopics, name: str, python_type: str
 ) -> tuple[list[_NodeTopic], list[_NodeTopic]]:
     """Return the topics of a name, and apart from them publishers of a type that are not used."""
-    same, unused = [], []
+    same = []
+    unused = []
     for topic in topics:
         if topic.name != name:
             continue
@@ -382,9 +430,7 @@ def _split_unused(
     return same, unused
 
 
-def _fault_of_other(
-    same: Sequence[_NodeTopic], unused: Sequence[_NodeTopic], message_type: str
-) -> Fault:
+def _fault_of_other(same: _OpenedTopics, unused: _OpenedTopics, message_type: str) -> Fault:
     """Return that a topic of the wanted name has another type, or an unused publisher."""
     if unused:
         [topic, *_] = unused
@@ -396,11 +442,10 @@ def _fault_of_other(
     return Fault(message, topic.location, cause="type")
 
 
-def _find_similar_topic(message: str, full_name: str, topics: Sequence[_NodeTopic]) -> Fault:
+def _find_similar_topic(message: str, full_name: str, topics: _OpenedTopics) -> Fault:
     """Return a fault with the topic whose name is like the missing one, if there is one."""
     meant = closest(full_name, [topic.name for topic in topics])
     for topic in topics:
         if topic.name == meant:
-            guess = f"; there is {quoted(meant)}"
-            return Fault(message, topic.location, guess, cause="topic")
+            return Fault(message, topic.location, f"; there is {quoted(meant)}", cause="topic")
     return Fault(message, cause="topic")

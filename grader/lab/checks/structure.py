@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from grader.base.errors import MissingElement
+from grader.base.grouping import StringsByName, known_values
 from grader.base.names import did_you_mean
 from grader.base.quantities import number_text
 from grader.base.source import LazyLocation, place
@@ -61,7 +62,7 @@ def held_by(
     if [joint.type for joint in moving] == wanted:
         if free and moving:
             blocked = _driven_or_blocked(moving[0], link)
-            if blocked is not None:
+            if blocked:
                 return blocked
         connecting = (moving or [joint])[0].name
         return passed(f"the {joint_type} joint {connecting!r} connects {link!r} to {parent!r}")
@@ -93,7 +94,7 @@ def _fail_other_joints(
     return failed(message, place(moving[0].location, "type"), detail=f" (joint {moving[0].name!r})")
 
 
-def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]) -> Outcome:
+def joints_named(robot: Configuration, *, parent: str, joints: StringsByName) -> Outcome:
     """The parent joints of the links have the given names (joint name: link name).
 
     A joint of the file with this name and this child counts, even if ROS 2 ignores it. Any joint
@@ -104,8 +105,8 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
         parent: The link from which the path to each link starts.
         joints: The name of each joint, and the link below it.
     """
-    wrong: list[tuple[str, str]] = []
-    absent: dict[str, str] = {}
+    wrong = []
+    absent = {}
     is_certain = True  # that no joint is meant to be a missing one
     at = None
     for name, link in joints.items():
@@ -113,7 +114,7 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
         if _is_named(robot, name, link, parent):
             continue
         robot.robot.check_complete()
-        if joint is None:
+        if not joint:
             thing = f"joint of {link}" if robot.robot.has_link(link) else link
             absent[thing] = f"no joint {name!r} connects {link!r}"
             is_certain &= thing == link or robot.are_joints_in_place
@@ -128,7 +129,7 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
     if absent:
         outcome = failed("; ".join(absent.values()))
         return outcome._replace(absent=tuple(absent) if is_certain else ())
-    return passed(f"the joints are named {enumerated([repr(name) for name in joints])}")
+    return passed(f"the joints are named {enumerated(map(repr, joints))}")
 
 
 def root_of_tree(
@@ -145,11 +146,9 @@ def root_of_tree(
     robot.link(link)
     chain = robot.chain(holds, above=link)
     joint = _joint_above_root(robot, link, links)
-    if joint is not None:
-        message, detail = (
-            f"{link!r} is not the root: it is below {joint.parent!r}",
-            f" (joint {joint.name!r})",
-        )
+    if joint:
+        message = f"{link!r} is not the root: it is below {joint.parent!r}"
+        detail = f" (joint {joint.name!r})"
         message += (
             "; only frames without a shape, connected by fixed joints, may be above it"
             if links
@@ -168,6 +167,8 @@ def root_of_tree(
         place_in_tree = f"only frames are above {link!r}"
     else:
         place_in_tree = f"{link!r} is the root"
+    if holds == link:
+        return passed(place_in_tree)
     return passed(f"{place_in_tree}, and {holds!r} is fixed to it")
 
 
@@ -205,7 +206,7 @@ def counts(
         "prismatic joint": prismatic,
         "fixed joint": fixed,
     }
-    expected = {noun: number for noun, number in wanted.items() if number is not None}
+    expected = known_values(wanted)
     counts_of_tree = _count_parts(robot, expected)
     actual = tuple(counts_of_tree[noun] for noun in expected)
     faults = []
@@ -243,7 +244,7 @@ def _joint_above_root(
     Of a frame, one may be if the links are named.
     """
     parent_joint = robot.parent_joints.get(link)
-    if parent_joint is None or not links:
+    if not parent_joint or not links:
         return parent_joint
     robot.find_root(link)  # raises for a loop of joints
     wrong = (
@@ -263,12 +264,12 @@ def _driven_or_blocked(joint: Joint, link: str) -> Outcome | None:
 
     It is None if it moves by itself.
     """
-    if joint.mimic is not None:
+    if joint.mimic:
         leader = "itself" if joint.mimic.joint == joint.name else "another joint"
         message = f"the joint that moves {link!r} mimics {leader}; it should have no <mimic>"
         detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r})"
         return failed(message, place(joint.mimic.location, "joint"), detail=detail)
-    if joint.limit is not None and joint.limit.velocity <= 0.0:  # one that ROS 2 cannot read is NaN
+    if joint.limit and joint.limit.velocity <= 0.0:  # one that ROS 2 cannot read is NaN
         message = (
             f"the velocity limit of the joint that moves {link!r} is "
             f"{number_text(joint.limit.velocity)}"
@@ -285,7 +286,7 @@ def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
     if not robot.robot.has_link(link):
         return False
     parent_joint = robot.parent_joints.get(link)
-    if parent_joint is None:
+    if not parent_joint:
         return any(joint.parent == link for joint in named)
     is_joined = robot.robot.has_link(parent) and robot.find_root(parent) == robot.find_root(link)
     path = robot.between(parent, link) if is_joined else ()
@@ -295,9 +296,7 @@ def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
 def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
     robot.pose(link, relative_to=parent)  # raises where no joints connect the two
     joint = robot.parent_joints.get(link)
-    if (
-        joint is None
-    ):  # two links of one tree, the second without a parent joint: it is above the first
+    if not joint:  # two links of one tree, the second without a parent joint: it is above the first
         above = robot.chain(parent, above=link)
         assert above
         message = (
@@ -323,6 +322,6 @@ def _count_parts(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
     for link in tree[1:]:
         joint = robot.parent_joints[link]
         part_counts[f"{joint.type} joint"] += 1
-        if joint.type != "fixed" and joint.mimic is None:
+        if joint.type != "fixed" and not joint.mimic:
             part_counts["moving joint"] += 1
     return part_counts

@@ -14,7 +14,7 @@ from grader.ros.urdf.visuals import placed, visuals
 MAX_SHAPES = 50  # of one link that are compared with each other
 VISIBLE = 0.01  # the smallest alpha of a colour that shows
 ShapeName = Literal["any", "box", "cylinder", "sphere"]
-_SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {
+_SHAPES = {
     "box": Box,
     "cylinder": Cylinder,
     "sphere": Sphere,
@@ -27,9 +27,7 @@ def visible(robot: Configuration, link: str) -> list[Visual]:
     Raise MissingElement without the link.
     """
     shown = (visual for visual in robot.link(link).visuals if not visual.geometry.is_empty)
-    return [
-        visual for visual in shown if visual.material is None or visual.material.rgba[3] >= VISIBLE
-    ]
+    return [visual for visual in shown if not visual.material or visual.material.rgba[3] >= VISIBLE]
 
 
 def hiding_link(robot: Configuration, link: str) -> str:
@@ -41,7 +39,7 @@ def hiding_link(robot: Configuration, link: str) -> str:
     hidden = [placed(robot, link, visual, link) for visual in visible(robot, link)]
     for other in robot.robot.links if hidden else ():
         for visual in other.visuals if other.name != link else ():
-            is_opaque = visual.material is None or visual.material.rgba[3] >= 1.0
+            is_opaque = not visual.material or visual.material.rgba[3] >= 1.0
             if is_opaque and not visual.geometry.is_empty:
                 shape = placed(robot, other.name, visual, link)
                 if all(map(shape.is_around, hidden)):

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
-from grader.base.names import similar_there
+from grader.base.names import last_part, similar_there
 from grader.base.source import LazyLocation, Location
 from grader.base.text import MAX_NAMED, counted, enumerated, quoted
 from grader.base.toml_types import Count
@@ -65,11 +65,11 @@ def xacro_uses(
         return source
     if not (file or properties or macros or includes):
         return _judge_expansion(submission)
-    paths = [*source.documents]
+    paths = list(source.documents)
     if not submission.is_single:
         paths = [path for path in paths if _ends_with(path, file)]
     inventory = source.inventory(submission.budget)
-    included: dict[str, None] = {}
+    included = {}
     for (path, _), files in source.includes.items():
         if path in paths:
             included.update(dict.fromkeys(files))
@@ -88,10 +88,10 @@ def xacro_uses(
             inventory.first_places(inventory.macros, paths),
             inventory.called,
         ),
-        *_missing_includes(includes, [*included]),
+        *_missing_includes(includes, list(included)),
     ]
     if not lacks:
-        names = [path.rpartition("/")[2] for path in paths]
+        names = [last_part(path) for path in paths]
         return passed(
             f"{enumerated(names, MAX_NAMED)}: xacro with the expected properties, macros "
             "and includes"
@@ -104,7 +104,7 @@ def _fail_lacks(source: "ExpandedSource", lacks: "Sequence[_Lack]") -> Outcome:
     """Return the failure of a xacro that lacks things, at the place of the first."""
     message = "; ".join(lack.message for lack in lacks)
     detail = "".join(lack.detail for lack in lacks)
-    places = [lack.location for lack in lacks if lack.location is not None]
+    places = [lack.location for lack in lacks if lack.location]
     at = places[0] if places else LazyLocation(source, 0)
     return failed(message, at, detail=detail)
 
@@ -113,7 +113,8 @@ def _find_source(submission: Submission, file: str) -> "ExpandedSource | Outcome
     """Return the xacro that is examined, or the failure of a robot that is not written in xacro."""
     from grader.ros.xacro.expansion import ExpandedSource
 
-    reading, urdf = submission.needed_urdf(), submission.urdf
+    reading = submission.needed_urdf()
+    urdf = submission.urdf
     assert isinstance(urdf, Read)  # else there is none that is needed
     source = reading.source
     if not isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
@@ -173,7 +174,7 @@ def _judge_expansion(submission: Submission) -> Outcome:
     urdf = submission.urdf
     assert isinstance(urdf, Read)
     raw = urdf.loaded.raw_xacro
-    if raw is not None:
+    if raw:
         return failed(raw.message, raw.location, problem=raw.message)
     return passed(f"{urdf.path} is written in xacro, and is expanded before ROS 2 reads it")
 
@@ -195,7 +196,7 @@ def _missing_uses(
         if count < wanted:
             message = f"{counted(count, kind, plural)} defined and used; there should be {wanted}"
             if unused:
-                detail = f"; not used: {enumerated([*map(quoted, unused)], MAX_NAMED)}"
+                detail = f"; not used: {enumerated(map(quoted, unused), MAX_NAMED)}"
                 yield _Lack(message, first_places[unused[0]], detail)
             else:
                 yield _Lack(message)
@@ -221,7 +222,7 @@ def _missing_includes(wanted: int | list[str], included: Sequence[str]) -> Itera
 
     missing = [quoted(end) for end in wanted if not is_included(end)]
     if missing:
-        names = [path.rpartition("/")[2] for path in included]
+        names = [last_part(path) for path in included]
         detail = f"; included: {enumerated(names, MAX_NAMED) or 'none'}"
         files = enumerated(missing, MAX_NAMED, "and no file")
         yield _Lack(f"no file {files} is included", None, detail)

@@ -4,11 +4,12 @@ Several questions may share a heading, such as "REQUIRED Question:": which of th
 is matched.
 """
 
-import re
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
-from typing import NamedTuple
+from itertools import pairwise, starmap
 
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import counted
 from grader.lab.documents.collection import DocumentCollection, Passage, TextDocument
@@ -27,7 +28,7 @@ from grader.lab.documents.headings import (
     stem,
 )
 
-_ORDINAL = re.compile(r"\s*+(\S++(?:\s++\S++)*?)\s++(\d{1,3})\s++of\s++(\d{1,3})\s*")
+_ORDINAL = on_use(r"\s*+(\S++(?:\s++\S++)*?)\s++(\d{1,3})\s++of\s++(\d{1,3})\s*")
 _MAX_TEXT = 32_000  # characters, which no written answer has
 _MAX_QUESTION = 4000  # characters of a question
 _MAX_HEADING_WORDS = 6  # a passage of so few words is a heading without a text
@@ -36,9 +37,10 @@ _MAX_OTHERS = 3  # passages besides the best one
 _COPIED = frozenset(
     {"required", "optional", "question", "answer", "task", "step", "todo", "your", "here", "write"}
 )  # words of a question or of a template, besides its own
+_Passages = Sequence[Passage]
 
 
-class _FoundAnswer(NamedTuple):
+class _FoundAnswer(Named):
     """The result of a search for an answer.
 
     It has the passage, the documents that were read, and why others were not.
@@ -46,8 +48,8 @@ class _FoundAnswer(NamedTuple):
 
     passage: Passage | None
     others: tuple[Passage, ...]  # further passages for the same place
-    read: tuple[str, ...]
-    unread: tuple[str, ...]
+    read: Strings
+    unread: Strings
 
 
 def find_answer(
@@ -67,7 +69,8 @@ def find_answer(
         for passages in _AnswerSearch(documents, read, wanted, question).passages()
         if passages
     ]
-    first, others = None, list[Passage]()
+    first = None
+    others = []
     if candidates:
         first, *others = min(
             candidates, key=lambda passages: (passages[0].is_empty, not passages[0].is_certain)
@@ -76,7 +79,7 @@ def find_answer(
     return _FoundAnswer(first, tuple(others[:_MAX_OTHERS]), paths, tuple(map(str, unread)))
 
 
-class _Ordinal(NamedTuple):
+class _Ordinal(Named):
     """A question by its place among all: "required question 1 of 2"."""
 
     pattern: Pattern
@@ -84,7 +87,7 @@ class _Ordinal(NamedTuple):
     total: int
 
 
-class _AnswerMatch(NamedTuple):
+class _AnswerMatch(Named):
     """The answers that belong to a question, by their index: exactly one, unless it is not certain.
 
     `how` says why.
@@ -106,9 +109,7 @@ def _read_ordinal(place: str) -> _Ordinal | None:
     return None
 
 
-def _match_answer(
-    wanted: _Ordinal, task: int | None, answers: Sequence[Passage]
-) -> _AnswerMatch | None:
+def _match_answer(wanted: _Ordinal, task: int | None, answers: _Passages) -> _AnswerMatch | None:
     """Return which of the answers in one document belongs to a question of a task.
 
     It is None if there is none for it.
@@ -119,7 +120,7 @@ def _match_answer(
     if not answers:
         return None
     only_answer = _only_answer_of_task(task, answers)
-    if only_answer is not None:
+    if only_answer:
         return only_answer
     written = [index for index, answer in enumerate(answers) if not answer.is_empty]
     numbers = [answer.head.number for answer in answers if answer.head.number is not None]
@@ -138,7 +139,7 @@ def _match_answer(
     return _AnswerMatch(tuple(indices), False, how)
 
 
-def _only_answer_of_task(task: int | None, answers: Sequence[Passage]) -> _AnswerMatch | None:
+def _only_answer_of_task(task: int | None, answers: _Passages) -> _AnswerMatch | None:
     """Return the only answer below the heading of a task, if all answers are below one."""
     if task is None or any(answer.head.section is None for answer in answers):
         return None
@@ -149,7 +150,7 @@ def _only_answer_of_task(task: int | None, answers: Sequence[Passage]) -> _Answe
     return _AnswerMatch(tuple(below), True, how)
 
 
-def _are_in_order(answers: Sequence[Passage], indices: Sequence[int]) -> bool:
+def _are_in_order(answers: _Passages, indices: Sequence[int]) -> bool:
     """Return whether each answer that has a number has that of its place."""
     return all(
         answers[index].head.number in (None, place) for place, index in enumerate(indices, start=1)
@@ -157,7 +158,7 @@ def _are_in_order(answers: Sequence[Passage], indices: Sequence[int]) -> bool:
 
 
 def _answer_by_number(
-    wanted: _Ordinal, task: int | None, answers: Sequence[Passage], written: Sequence[int]
+    wanted: _Ordinal, task: int | None, answers: _Passages, written: Sequence[int]
 ) -> _AnswerMatch | None:
     """Return the answer below the question's number.
 
@@ -178,7 +179,7 @@ def _answer_by_number(
     return _AnswerMatch(tuple(hits), True, f"by the number in {title}")
 
 
-def _answers_after_list(answers: Sequence[Passage], total: int) -> list[int]:
+def _answers_after_list(answers: _Passages, total: int) -> list[int]:
     """Return the answers that follow a list of all questions; none without such a list."""
     is_list = len(answers) == 2 * total and all(map(_is_line, answers[:total]))
     if is_list and not any(map(_is_line, answers[total:])):
@@ -186,7 +187,7 @@ def _answers_after_list(answers: Sequence[Passage], total: int) -> list[int]:
     return []
 
 
-def _answer_text(answers: Sequence[Passage], indices: Sequence[int]) -> str:
+def _answer_text(answers: _Passages, indices: Sequence[int]) -> str:
     return f'"{answers[indices[0]].head.shown}"'
 
 
@@ -205,10 +206,12 @@ class _AnswerSearch:
         wanted: list[Label | _Ordinal],
         question: str,
     ) -> None:
-        self._documents, self._read, self._wanted = documents, read, wanted
+        self._documents = documents
+        self._read = read
+        self._wanted = wanted
         self._copied = _COPIED | set(WORDS.findall(question.lower()))
-        self._task: int | None = None  # the first that is named
-        self._patterns = set[Pattern]()
+        self._task = None  # the first that is named
+        self._patterns = set()
         for place in wanted:
             if isinstance(place, _Ordinal):
                 self._patterns.add(place.pattern)
@@ -242,11 +245,11 @@ class _AnswerSearch:
 
         One that is an item of a list or a mention is among them only if it comes first.
         """
-        ranked: list[tuple[tuple[bool, ...], Passage]] = []
+        ranked = []
         for document in self._read:
             for head in self._headings_about(wanted, document):
                 passage = self._find_passage(document, head)
-                if passage is None:
+                if not passage:
                     continue
                 words = passage.text.split(maxsplit=_MAX_HEADING_WORDS)
                 is_short = len(words) <= _MAX_HEADING_WORDS
@@ -302,13 +305,13 @@ class _AnswerSearch:
 
         These may also be those in files of that name, if this is clear.
         """
-        groups = list[list[tuple[TextDocument, Heading]]]()
+        groups = []
         for document in self._read:
             groups.append([(document, head) for head in self._headings(document)])
         groups.append(
             [(document, _heading_of_file(document, wanted.pattern)) for document in self._read]
         )
-        joined: list[Passage] = []
+        joined = []
         for group in groups:
             heads = []
             for document, head in group:
@@ -316,17 +319,17 @@ class _AnswerSearch:
                 is_question = wanted.pattern == ("question",) and "question" in head.pattern
                 if is_question or head.pattern == wanted.pattern:
                     heads.append((document, head))
-            passages = [
-                self._find_passage(document, head) for document, head in heads[:_MAX_MATCHES]
-            ]
-            answers = [passage for passage in passages if passage is not None]
+            passages = list(starmap(self._find_passage, heads[:_MAX_MATCHES]))
+            answers = [passage for passage in passages if passage]
             match = _match_answer(wanted, self._task, answers)
-            if match is not None:
+            if match:
                 joined.append(_joined_passage(match, [answers[index] for index in match.indices]))
         return sorted(joined, key=lambda passage: (passage.is_empty, not passage.is_certain))
 
     def _find_passage(self, document: TextDocument, head: Heading) -> Passage | None:
-        lines, start, end = document.lines, head.start, head.end
+        lines = document.lines
+        start = head.start
+        end = head.end
         while start < end and not has_words(lines[start]):
             start += 1
         kept = ["[picture]" if line == PICTURE else line.rstrip() for line in lines[start:end]]
@@ -355,7 +358,9 @@ class _AnswerSearch:
         text = text.lower()
         asked, mark, rest = text.rpartition("?")
         if text.rstrip().endswith(":"):
-            asked, mark, rest = text, ":", ""
+            asked = text
+            mark = ":"
+            rest = ""
         others = [word not in self._copied for word in _own_words(asked)]
         is_asked = mark != "" and 2 * sum(others) <= len(others)
         return self._copied.issuperset(_own_words(rest if is_asked else text))

@@ -8,13 +8,15 @@ import re
 import subprocess
 import sys
 from bisect import bisect_right
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from fnmatch import translate
 from functools import lru_cache
 from types import MappingProxyType
-from typing import NamedTuple
 
 from grader.base.errors import InputError, MachineError
+from grader.base.grouping import Strings, StringsByName
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.files.tree import File, Tree
 from grader.lab.documents import converter
@@ -25,7 +27,8 @@ CONVERTED = (".docx", ".pdf")  # whose text a separate process reads
 MAX_SECONDS = 3.0  # of processor time, for all Word and PDF files of a submission
 _WAITING = 10  # a converter ends after this many times its limit, also if it waits for something
 _TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
-_MAX_FILES, _MAX_CONVERTED = 40, 8
+_MAX_FILES = 40
+_MAX_CONVERTED = 8
 _NO_ANSWERS = {
     "CMakeLists.txt",
     "requirements.txt",
@@ -36,7 +39,7 @@ _NO_ANSWERS = {
 }
 # The beginning of a file without answers: of another format, or a report of the grader, which
 # repeats questions and answers.
-_OTHER = re.compile(
+_OTHER = on_use(
     r"\s*<(?:\?xml|!--|robot|launch|package)"  # XML with the ending .txt
     # "lab6: my_robot.urdf" and "24.5 of 30 points: ...", or the grade, below it: the report as text
     # and in Markdown
@@ -46,7 +49,7 @@ _OTHER = re.compile(
 )
 
 
-class TextDocument(NamedTuple):
+class TextDocument(Named):
     """The first lines of a document."""
 
     file: File
@@ -64,13 +67,14 @@ class TextDocument(NamedTuple):
         In a PDF, it may be anywhere on the pages with these lines.
         """
         if self.file.suffix == ".pdf" and end is not None:
-            first, last = self.page(start) or 1, self.page(max(start, end - 1)) or 1
+            first = self.page(start) or 1
+            last = self.page(max(start, end - 1)) or 1
             start = self.pages[first - 1]
             end = self.pages[last] if last < len(self.pages) else len(self.lines)
         return converter.PICTURE in self.lines[start:end]
 
 
-class Passage(NamedTuple):
+class Passage(Named):
     """The part of a document below a heading."""
 
     text: str
@@ -82,7 +86,7 @@ class Passage(NamedTuple):
     is_empty: bool = False  # whether it holds only the question
 
 
-class _Unread(NamedTuple):
+class _Unread(Named):
     """A document that was not read completely, and why; the path is empty for several documents."""
 
     path: str
@@ -90,6 +94,12 @@ class _Unread(NamedTuple):
 
     def __str__(self) -> str:
         return self.reason
+
+
+_ReadDocument = TextDocument | _Unread | None
+
+
+_FoundDocuments = tuple[list[TextDocument], list[_Unread]]  # those that are read, and the others
 
 
 class DocumentCollection:
@@ -101,13 +111,13 @@ class DocumentCollection:
     again.
     """
 
-    def __init__(self, tree: Tree, converted: Mapping[str, str] = MappingProxyType({})) -> None:
+    def __init__(self, tree: Tree, converted: StringsByName = MappingProxyType({})) -> None:
         self.tree = tree
         self.converted = dict(converted)
         self._seconds = MAX_SECONDS
         self._converted = 0
-        self._read_files: dict[str, TextDocument | _Unread | None] = {}
-        self._named: dict[tuple[str, ...], tuple[list[TextDocument], list[_Unread]]] = {}
+        self._read_files: dict[str, _ReadDocument] = {}
+        self._named: dict[Strings, _FoundDocuments] = {}
         self._headings: dict[tuple[str, frozenset[Pattern]], tuple[Heading, ...]] = {}
 
     def headings(
@@ -125,7 +135,7 @@ class DocumentCollection:
         return self._headings[key]
 
     @property
-    def read(self) -> tuple[str, ...]:
+    def read(self) -> Strings:
         """The paths of the documents that were read."""
         return tuple(
             path
@@ -133,7 +143,7 @@ class DocumentCollection:
             if isinstance(read_document, TextDocument)
         )
 
-    def named(self, patterns: Sequence[str]) -> tuple[list[TextDocument], list[_Unread]]:
+    def named(self, patterns: Sequence[str]) -> _FoundDocuments:
         """Return the documents whose names match one of the patterns.
 
         Also return what of them was not read, and why.
@@ -143,9 +153,9 @@ class DocumentCollection:
             self._named[key] = self._find(key)
         return self._named[key]
 
-    def _find(self, patterns: tuple[str, ...]) -> tuple[list[TextDocument], list[_Unread]]:
-        read: list[TextDocument] = []
-        unread: list[_Unread] = []
+    def _find(self, patterns: Strings) -> _FoundDocuments:
+        read = []
+        unread = []
         matching = _names_like(patterns)
         files = self.tree.files.values()
         chosen = [
@@ -157,7 +167,7 @@ class DocumentCollection:
             document = self.document(file)
             if isinstance(document, _Unread):
                 unread.append(document)
-            elif document is not None:
+            elif document:
                 read.append(document)
                 if document.limit:
                     unread.append(
@@ -171,7 +181,7 @@ class DocumentCollection:
             unread.append(_Unread("", rest))
         return read, unread
 
-    def document(self, file: File) -> TextDocument | _Unread | None:
+    def document(self, file: File) -> _ReadDocument:
         """Return a document, or the reason why it was not read.
 
         It is None for a file that contains no answers.
@@ -180,7 +190,7 @@ class DocumentCollection:
             self._read_files[file.path] = self._read_document(file)
         return self._read_files[file.path]
 
-    def _read_document(self, file: File) -> TextDocument | _Unread | None:
+    def _read_document(self, file: File) -> _ReadDocument:
         try:
             text = self._text(file)
         except InputError as error:
@@ -306,6 +316,6 @@ def _make_document(file: File, text: str) -> TextDocument:
 
 
 @lru_cache(maxsize=256)
-def _names_like(patterns: tuple[str, ...]) -> re.Pattern[str]:
+def _names_like(patterns: Strings) -> re.Pattern[str]:
     """Return what matches names in lower case: translated once a rubric, not once a submission."""
     return re.compile("|".join(translate(pattern.lower()) for pattern in patterns))

@@ -15,7 +15,8 @@ from contextlib import suppress
 from typing import Any
 
 # Exit codes: where the package that reads the format is not installed, and for more than an answer.
-MISSING, TOO_LARGE = 3, 4
+MISSING = 3
+TOO_LARGE = 4
 MAX_PAGES = 100
 PAGE_BREAK = "\f"  # a line of its own before every page but the first
 # a line of its own after the text that a picture is below, or at the end of its page
@@ -38,8 +39,9 @@ def main() -> int:
 
     Its arguments are `docx` or `pdf`, seconds of processor time, and the process id of the parent.
     """
-    kind, seconds, parent = sys.argv[1], float(sys.argv[2]), int(sys.argv[3])
-    _end_with_parent(parent, seconds)
+    kind = sys.argv[1]
+    seconds = float(sys.argv[2])
+    _end_with_parent(int(sys.argv[3]), seconds)
     _limit(seconds)
     data = sys.stdin.buffer.read()
     try:
@@ -101,8 +103,9 @@ def _docx(data: bytes) -> bytes:
 
     Lines also show pictures, and the page breaks that Word rendered.
     """
-    lines: list[str] = []
-    text, after = "", list[str]()
+    lines = []
+    text = ""
+    after = []
     for name, paragraph, is_in_row in _elements(data):
         match name:
             case "t":
@@ -117,7 +120,8 @@ def _docx(data: bytes) -> bytes:
                 after.append(PAGE_BREAK if name == "lastRenderedPageBreak" else PICTURE)
             case "p" | "tr" if not is_in_row:
                 lines += [text.rstrip("\t"), *after]
-                text, after = "", []
+                text = ""
+                after = []
     return _encode("\n".join(lines))
 
 

@@ -7,6 +7,8 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.text import cut
 from grader.files.tree import File, Tree
 from grader.lab.documents.collection import DocumentCollection, TextDocument
@@ -16,15 +18,15 @@ _PICTURES = frozenset(
     {".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"}
 )
 EVIDENCE = _PICTURES | {".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"}
-_COPY = re.compile(r"(?<=\d)\s*\(\d{1,3}\)$")  # the number of a copy: Task1_Step8 (1).png
+_COPY = on_use(r"(?<=\d)\s*\(\d{1,3}\)$")  # the number of a copy: Task1_Step8 (1).png
 DOCUMENTS = ("*.pdf", "*.docx")  # which may have evidence below their headings
-_PRELAB = re.compile(
+_PRELAB = on_use(
     r"(?<![^\W\d_])pre[\W_]?lab", re.IGNORECASE
 )  # work before the lab, which has no evidence of it
 _MAX_SHOWN = 60  # characters of a heading
 
 
-class EvidenceFile(NamedTuple):
+class EvidenceFile(Named):
     """One file of evidence, and its size in bytes.
 
     Of evidence inside a document, `heading` is what it is below, and `page` where that is, if it is
@@ -45,7 +47,10 @@ class EvidenceFile(NamedTuple):
         return f"{self.path} ({size if self.size >= 1000 else f'{self.size} bytes'})"
 
 
-class LabelledFile(NamedTuple):
+_Files = tuple[EvidenceFile, ...]
+
+
+class LabelledFile(Named):
     """A picture, video or PDF, and the task and step that its path names."""
 
     file: File
@@ -58,7 +63,7 @@ def read_labelled_files(tree: Tree) -> tuple[LabelledFile, ...]:
     return tuple(LabelledFile(file, read_label(_COPY.sub("", stem(file.path)))) for file in files)
 
 
-def as_evidence(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:
+def as_evidence(files: Sequence[LabelledFile]) -> _Files:
     """Describe files of evidence."""
     return tuple(EvidenceFile(labelled.file.path, labelled.file.size) for labelled in files)
 
@@ -66,8 +71,8 @@ def as_evidence(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:
 class FoundEvidence(NamedTuple):
     """The files of a piece of evidence, and those that may be meant, but are not certain."""
 
-    files: tuple[EvidenceFile, ...]
-    possible: tuple[EvidenceFile, ...] = ()
+    files: _Files
+    possible: _Files = ()
 
 
 def find_evidence(
@@ -109,8 +114,9 @@ def _evidence_in_documents(
 
     Only pictures that are certain count.
     """
-    below, pictures = list[EvidenceFile](), list[EvidenceFile]()
-    if documents is None:
+    below = list[EvidenceFile]()
+    pictures = list[EvidenceFile]()
+    if not documents:
         return below, pictures
     for document, head, label in _headings_about(documents, wanted):
         evidence = _evidence_below(document, head)
@@ -156,7 +162,7 @@ def _whole_documents(documents: DocumentCollection | None) -> list[File]:
 
     A pre-lab has none.
     """
-    if documents is None:
+    if not documents:
         return []
     read, unread = documents.named(DOCUMENTS)
     files = [
@@ -194,7 +200,6 @@ def _is_certain(wanted: Label, document: TextDocument, head: Heading) -> bool:
 
 
 def _evidence_below(document: TextDocument, head: Heading) -> EvidenceFile:
-    text = " ".join(head.text.split())
-    shown = cut(text, _MAX_SHOWN)
+    shown = cut(" ".join(head.text.split()), _MAX_SHOWN)
     file = document.file
     return EvidenceFile(file.path, file.size, heading=shown, page=document.page(head.start))

@@ -11,13 +11,15 @@ from bisect import bisect_right
 from collections.abc import Collection, Iterable
 from functools import lru_cache
 from itertools import islice, takewhile
-from typing import NamedTuple
 
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.text import cut
 
-WORDS = re.compile(r"[^\W\d_]+|\d+")
+WORDS = on_use(r"[^\W\d_]+|\d+")
 _QUESTION_WORDS = frozenset({"question", "q", "que", "frage"})
-_NUMBER = re.compile(r"\d{1,4}")
+_NUMBER = on_use(r"\d{1,4}")
 _TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
 _STEPS = {
     "step",
@@ -34,8 +36,8 @@ _STEPS = {
 } | _QUESTION_WORDS
 KEYWORDS = _TASKS | _STEPS
 _MAX_LENGTH = 300
-Pattern = tuple[str, ...]  # the words of a heading, such as ("required", "question")
-_QUESTIONS: tuple[Pattern, ...] = (
+Pattern = Strings  # the words of a heading, such as ("required", "question")
+_QUESTIONS = (
     ("required", "question"),
     ("optional", "question"),
     ("question",),
@@ -44,18 +46,18 @@ _MAX_LINE = 1000  # characters of a line in which a label is searched
 _MAX_SHOWN = 40  # characters of a heading
 _MAX_WORDS = 6  # the first words of a line, which contain the label of a heading
 _MAX_SPLIT = 12  # words and signs at the beginning of a line that are looked at
-_MARKUP = re.compile(r"^[\s#>*\-_+|`]+")
-_MARKED = re.compile(r"(#{1,6})(?!#)")
-_FENCE = re.compile(r"\s*(?:```|~~~)")
-_SPACED = re.compile(r"#+\s")
+_MARKUP = on_use(r"^[\s#>*\-_+|`]+")
+_MARKED = on_use(r"(#{1,6})(?!#)")
+_FENCE = on_use(r"\s*(?:```|~~~)")
+_SPACED = on_use(r"#+\s")
 # Numbers that name a step: 1.15, and 15) or 15. with two digits, because one digit also numbers the
 # items of a list.
-_DOTTED = re.compile(r"^\(?([1-9])\.(\d{1,2})\b[.):]?\s*")
-_NUMBERED = re.compile(r"^\(?([1-9]\d)[.):][*_]*(?:\s+|$)")
-_ITEM = re.compile(r"^\(?([1-9])[.):][*_]*(?:\s+|$)")
+_DOTTED = on_use(r"^\(?([1-9])\.(\d{1,2})\b[.):]?\s*")
+_NUMBERED = on_use(r"^\(?([1-9]\d)[.):][*_]*(?:\s+|$)")
+_ITEM = on_use(r"^\(?([1-9])[.):][*_]*(?:\s+|$)")
 _LEADING = frozenset({"to", "the", "my", "for", "lab"})  # before the words of a question
 _ANSWERS = frozenset({"answer", "answers"})
-_TAG = re.compile(r"</?[a-zA-Z][^<>]{0,80}>")  # of HTML in Markdown
+_TAG = on_use(r"</?[a-zA-Z][^<>]{0,80}>")  # of HTML in Markdown
 # "Task 1", "t_1"; "Step 15", "Steps 3, 4 & 5", "Step 1-2".
 _TASK = rf"(?:{'|'.join(sorted(_TASKS))})(?:[\W_]*\d{{1,4}}(?!\d))+"
 _STEP = (
@@ -69,10 +71,10 @@ _BEGINNING = (
 )
 _FILLERS = r"[\W_]*(?:(?:of|the|in|to|for|and|required|optional|question|answer)\b[\W_]*)*"
 # "Step 15: see task 2" names no task, and "Step 26: 0.6" no step 6.
-_LABEL = re.compile(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{_STEP}))*")
+_LABEL = on_use(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{_STEP}))*")
 
 
-class Label(NamedTuple):
+class Label(Named):
     """The task and steps that a text names, and all of its words.
 
     They are None and empty where it names none.
@@ -80,7 +82,7 @@ class Label(NamedTuple):
 
     task: int | None
     steps: frozenset[int]
-    words: tuple[str, ...]
+    words: Strings
 
     @property
     def is_complete(self) -> bool:
@@ -95,12 +97,13 @@ def read_label(text: str) -> Label:
     If it names several tasks, as a path may, the last one counts.
     """
     text = text[-_MAX_LENGTH:].lower()
-    task: int | None = None
-    steps: set[int] = set()
+    task = None
+    steps = set()
     for part in text.split("/"):
         own_task, own_steps = _numbers(WORDS.findall(part))
         if own_task is not None:
-            task, steps = own_task, own_steps
+            task = own_task
+            steps = own_steps
         else:
             steps |= own_steps
     return Label(task, frozenset(steps), tuple(WORDS.findall(text)))
@@ -129,8 +132,8 @@ def stem(path: str) -> str:
 
 def _numbers(words: list[str]) -> tuple[int | None, set[int]]:
     """Return the task and the steps that these words name."""
-    task: int | None = None
-    steps: set[int] = set()
+    task = None
+    steps = set()
     for index, word in enumerate(words):
         numbers = [int(number) for number in takewhile(_NUMBER.fullmatch, words[index + 1 :])]
         if not numbers:
@@ -142,7 +145,7 @@ def _numbers(words: list[str]) -> tuple[int | None, set[int]]:
     return task, steps
 
 
-def _in_order(wanted: tuple[str, ...], words_of_heading: tuple[str, ...]) -> bool:
+def _in_order(wanted: Strings, words_of_heading: Strings) -> bool:
     """Return whether the wanted words occur next to each other.
 
     Each may be a prefix of a word: cam in camera.
@@ -154,7 +157,7 @@ def _in_order(wanted: tuple[str, ...], words_of_heading: tuple[str, ...]) -> boo
     return False
 
 
-class Heading(NamedTuple):
+class Heading(Named):
     """A line that begins a passage, and the index of the line that ends it."""
 
     start: int
@@ -201,7 +204,7 @@ def find_headings(
             continue
         above = headings[-1] if headings else None
         heading = _read_heading(line[:_MAX_LINE], index, known, above, is_marked=not is_fenced)
-        if heading is None:
+        if not heading:
             continue
         own_task = heading.label.task
         if own_task is not None and not heading.is_mention:
@@ -266,7 +269,7 @@ def _read_heading(
     if pattern or (marked and _SPACED.match(line) and has_words(line)):
         return heading
     item = _ITEM.match(plain)
-    if item and above is not None and not marked and (above.is_item or _is_task(above)):
+    if item and above and not marked and (above.is_item or _is_task(above)):
         return heading._replace(label=read_label(f"step {item[1]}"), is_item=True)
     return None
 

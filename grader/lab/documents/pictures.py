@@ -86,7 +86,7 @@ def read_picture(file: File) -> EmbeddedPicture | NotShown:
     except InputError as error:
         return NotShown(file.path, error.reason if isinstance(error, FileError) else str(error))
     kind = _image_type(data)
-    if kind is not None:
+    if kind:
         return EmbeddedPicture(file.path, kind, data)
     return NotShown(file.path, _OTHER)
 

@@ -7,6 +7,7 @@ The documents that may hold an answer for which no heading was found are among t
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from grader.base.grouping import Strings
 from grader.base.text import first_lines
 from grader.files.tree import File
 from grader.lab.checks.manual import NO_ANSWER, answered, evidence_shown
@@ -36,9 +37,10 @@ _DOCUMENTS = (
     ),
     *("*.docx", "*.doc", "*.odt", "*.rtf", "*.pages", "*.ipynb", "*.pptx", "*.odp"),
 )
+_Picture = EmbeddedPicture | NotShown
 
 
-def find_pictures(result: Result, submission: Submission) -> tuple[EmbeddedPicture | NotShown, ...]:
+def find_pictures(result: Result, submission: Submission) -> tuple[_Picture, ...]:
     """Return the pictures and PDF files of a criterion that needs manual grading.
 
     Also return the files that are not shown.
@@ -59,7 +61,7 @@ def find_pictures(result: Result, submission: Submission) -> tuple[EmbeddedPictu
     )
 
 
-def _searched_files(result: Result, submission: Submission) -> tuple[str, ...]:
+def _searched_files(result: Result, submission: Submission) -> Strings:
     """Return the files that are shown if none is named: of a question only the PDF files."""
     return tuple(
         labelled.file.path
@@ -70,9 +72,7 @@ def _searched_files(result: Result, submission: Submission) -> tuple[str, ...]:
 
 def may_have_pictures(result: Result) -> bool:
     """Return whether pictures of the submission may belong to a criterion."""
-    without_file = _is_question(result) and (
-        result.outcome.location is None or _has_no_answer(result)
-    )
+    without_file = _is_question(result) and (not result.outcome.location or _has_no_answer(result))
     return bool(_shown_files(result)) or _is_evidence(result) or without_file
 
 
@@ -105,13 +105,12 @@ def find_content(result: Result, report: Report) -> str:
 
     Without an answer it is the text of the documents that may hold one.
     """
-    content, is_certain = result.outcome.measured, not result.outcome.problem
+    content = result.outcome.measured
+    is_certain = not result.outcome.problem
     if _has_no_answer(result):
         documents, unread = _loose_documents(result, report.submission)
-        content, is_certain = (
-            "\n".join(line for one in documents for line in _list_lines(one)),
-            not unread,
-        )
+        content = "\n".join(line for one in documents for line in _list_lines(one))
+        is_certain = not unread
     if not (_is_question(result) and isinstance(content, str) and is_certain) or _loose_files(
         report
     ):
@@ -126,7 +125,7 @@ def loose_lines(result: Result, submission: Submission, *, is_anonymous: bool = 
     These are documents in which no heading was found for it.
     """
     documents, unread = _loose_documents(result, submission)
-    lines = list[str]()
+    lines = []
     for number, one in enumerate(documents, 1):
         name = f"document {number}" if is_anonymous else one.file.path
         lines += [f"[{name}: without a heading of this question]", *_list_lines(one), ""]
@@ -182,18 +181,19 @@ def _is_evidence(result: Result) -> bool:
     return result.criterion.check.function is evidence_shown
 
 
-def evidence_files(result: Result) -> tuple[str, ...]:
+def evidence_files(result: Result) -> Strings:
     """Return the paths of the files of evidence, also where it takes the place of a URDF.
 
     What other checks measure, such as a vector or names, is no list of files.
     """
-    measured, is_open = result.outcome.measured, result.outcome.status == "pending"
+    measured = result.outcome.measured
+    is_open = result.outcome.status == "pending"
     if not isinstance(measured, tuple | list) or not (_is_evidence(result) or is_open):
         return ()
     return tuple(name for name in measured if isinstance(name, str))
 
 
-def _shown_files(result: Result) -> tuple[str, ...]:
+def _shown_files(result: Result) -> Strings:
     """Return the paths of the files that are shown.
 
     They are files of evidence, the PDF of an answer, or the document with pictures in it.
@@ -201,7 +201,7 @@ def _shown_files(result: Result) -> tuple[str, ...]:
     if files := evidence_files(result):
         return files
     place = result.outcome.location
-    if place is None or not _is_question(result) or _has_no_answer(result):
+    if not place or not _is_question(result) or _has_no_answer(result):
         return ()
     shown = CONVERTED if _PICTURE in str(result.outcome.measured) else (".pdf",)
     if place.path.lower().endswith(shown):
@@ -209,11 +209,9 @@ def _shown_files(result: Result) -> tuple[str, ...]:
     return ()
 
 
-def _read_pictures(
-    path: str, result: Result, submission: Submission
-) -> Iterator[EmbeddedPicture | NotShown]:
+def _read_pictures(path: str, result: Result, submission: Submission) -> Iterator[_Picture]:
     file = submission.whole_tree.files.get(path) or submission.tree.files.get(path)
-    if file is None:
+    if not file:
         yield NotShown(path, "it is no longer in the submission")
     elif file.suffix == ".docx":
         yield from pictures_in_word(file)
@@ -229,11 +227,12 @@ def _find_page(file: File, result: Result, documents: DocumentCollection | None)
 
     It is the first page without one.
     """
-    document = documents.document(file) if documents is not None else None
-    if documents is None or not isinstance(document, TextDocument):
+    document = documents.document(file) if documents else None
+    if not documents or not isinstance(document, TextDocument):
         return 1
-    outcome, start = result.outcome, 0
-    if isinstance(outcome.measured, str) and outcome.location is not None:
+    outcome = result.outcome
+    start = 0
+    if isinstance(outcome.measured, str) and outcome.location:
         start = outcome.location.line - 1
     else:
         heads = headed(documents, result.criterion.arguments.get("names", ()))
@@ -242,8 +241,8 @@ def _find_page(file: File, result: Result, documents: DocumentCollection | None)
 
 
 def _limit_pictures(
-    pictures: Iterable[EmbeddedPicture | NotShown],
-) -> Iterator[EmbeddedPicture | NotShown]:
+    pictures: Iterable[_Picture],
+) -> Iterator[_Picture]:
     """Yield pictures up to the limits for one criterion, then a notice that there are more."""
     left = _MAX_BYTES
     for count, one in enumerate(pictures):

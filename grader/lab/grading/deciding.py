@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from grader.base.errors import MachineError, MissingElement, NotDecided, OutOfTime, RubricError
+from grader.base.grouping import StringsByName
 from grader.base.names import near
 from grader.base.source import LazyLocation, Location
 from grader.base.text import enumerated
@@ -36,7 +37,7 @@ def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> I
     """
     grading = _Grading(rubric, submission)
     left = {criterion.id for criterion in rubric.criteria if criterion.id in wanted}
-    waiting: list[str] = []  # one that a criterion below may still excuse, and those after it
+    waiting = []  # one that a criterion below may still excuse, and those after it
     for criterion in (asked for asked in rubric.criteria if asked.id in wanted):
         grading.decide(criterion)
         left.discard(criterion.id)
@@ -45,7 +46,7 @@ def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> I
             yield grading.results[waiting.pop(0)]
 
 
-def _manual_subjects(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
+def _manual_subjects(rubric: Rubric, submission: Submission) -> StringsByName:
     """Return what a submission lacks, and why.
 
     Criteria about it then need manual grading by the rubric.
@@ -65,7 +66,8 @@ class _Grading:
     """The criteria decided so far, and which of them was the first that misses a thing."""
 
     def __init__(self, rubric: Rubric, submission: Submission) -> None:
-        self._rubric, self.submission = rubric, submission
+        self._rubric = rubric
+        self.submission = submission
         self._manual = _manual_subjects(rubric, submission)
         if "URDF" in self._manual:
             submission = replace(submission, urdf=Absent())
@@ -108,9 +110,9 @@ class _Grading:
         """Return the criterion because of which this one is skipped, if there is one."""
         for name in criterion.requires:
             required = self.results.get(name)
-            if required is not None and required.is_lost:
+            if required and required.is_lost:
                 return required.because or name
-        if self._subjects.robot is not None or criterion.check.subject != "robot":
+        if self._subjects.robot or criterion.check.subject != "robot":
             return None
         for result in self.results.values():
             is_of_loading = result.criterion.check.function is urdf_loads
@@ -129,7 +131,8 @@ class _Grading:
         """Return a failure with what explains it."""
         if result.outcome.status != "failed":
             return result
-        criterion, outcome = result.criterion, result.outcome
+        criterion = result.criterion
+        outcome = result.outcome
         if not all(self._is_unbuilt(name) for name in outcome.absent if name in self._rubric.links):
             outcome = outcome._replace(absent=())
         outcome = self._explain(outcome, looks_at=criterion.check.about.looks_at)
@@ -140,13 +143,9 @@ class _Grading:
 
         Without an own one, it gets that of the link that is examined.
         """
-        robot, link = self.submission.robot, criterion.arguments.get("link")
-        if (
-            outcome.location is not None
-            or outcome.absent
-            or robot is None
-            or criterion.check.subject != "robot"
-        ):
+        robot = self.submission.robot
+        link = criterion.arguments.get("link")
+        if outcome.location or outcome.absent or not robot or criterion.check.subject != "robot":
             return outcome
         named = (
             [robot.link(link)] if isinstance(link, str) and robot.has_link(link) else robot.links
@@ -165,15 +164,15 @@ class _Grading:
         It is carried only if the fact that then counts instead holds.
         """
         cause = self._find_cause(result, carried.causes)
-        if cause is None:
+        if not cause:
             return result
         try:
-            criterion = carried.of(result.criterion)
-            other = self._run_check(criterion, carried.check, carried.arguments)
+            other = self._run_check(carried.of(result.criterion), carried.check, carried.arguments)
             other = other._replace(criterion=result.criterion)
         except MissingElement:
             return result
-        name, outcome = cause.criterion.id, result.outcome
+        name = cause.criterion.id
+        outcome = result.outcome
         if outcome.status == "skipped":
             outcome = Outcome("failed", f"it cannot be measured, because {name} failed")
         if other.outcome.status == "pending":
@@ -192,7 +191,7 @@ class _Grading:
 
     def _is_shown(self, result: Result) -> bool:
         """Return whether a report shows why a criterion is lost."""
-        if result.outcome.location is not None:
+        if result.outcome.location:
             return True
         if not result.because:
             return False
@@ -229,7 +228,7 @@ class _Grading:
         because = result.because
         cause = self.results.get(because) if because else None
         origins = [because]
-        if cause is not None:
+        if cause:
             origins.append(cause.carried)
         for name in causes:
             if name not in self.results:
@@ -237,7 +236,7 @@ class _Grading:
             before = self.results[name]
             # None for one that is below
             mistake = self.results.get(before.because or before.criterion.id)
-            if mistake is None or mistake.outcome.status != "failed":
+            if not mistake or mistake.outcome.status != "failed":
                 continue
             if not because or mistake.criterion.id in origins:
                 return mistake
@@ -312,7 +311,7 @@ class _Grading:
         outcome = self._explain(outcome, missing.kind, missing.name)
         return Result(criterion, self._with_place(outcome, criterion))
 
-    def _list_absent(self, missing: MissingElement) -> tuple[str, ...]:
+    def _list_absent(self, missing: MissingElement) -> Sequence[str]:
         """Return what is not built yet, if that is all."""
         if missing.kind == "link":
             if missing.name in self._rubric.links and self._is_unbuilt(missing.name):
@@ -322,9 +321,10 @@ class _Grading:
 
     def _is_unbuilt(self, name: str) -> bool:
         """Return whether no link of the robot may be meant by the name of a missing one."""
-        robot, wanted = self.submission.robot, self._rubric.links
+        robot = self.submission.robot
+        wanted = self._rubric.links
         others = []
-        for link in robot.links if robot is not None else ():
+        for link in robot.links if robot else ():
             if link.known.name in wanted:
                 continue
             if link.known.visuals:
@@ -341,12 +341,12 @@ class _Grading:
         """
         first = self.missed.get(thing, criterion.id)
         before = self.results.get(first)
-        if before is not None and self._is_excused(before.criterion, criterion.id):
+        if before and self._is_excused(before.criterion, criterion.id):
             self.results[first] = Result(
                 before.criterion, _skip_outcome(criterion.id), criterion.id
             )
             first = criterion.id
-        if criterion.adjustment is None:
+        if not criterion.adjustment:
             self.missed[thing] = first
         return first
 
@@ -385,7 +385,7 @@ def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> Missin
 
     It is None if it may be that of the lab.
     """
-    if robot is None or not robot.is_foreign(rubric.links):
+    if not robot or not robot.is_foreign(rubric.links):
         return None
     missing = f"there is no link {link!r}, and " if link else ""
     message = f"{missing}this looks like another robot: it has {_known_links_text(rubric, robot)}"
@@ -403,20 +403,21 @@ def _known_links_text(rubric: Rubric, robot: Robot) -> str:
     )
 
 
-def _missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
+def _missing_work(rubric: Rubric, submission: Submission) -> StringsByName:
     """Return what a submission with evidence lacks, and why.
 
     This is the `URDF` or the `package` of this lab.
     """
-    missing, robot = {}, submission.robot
+    missing = {}
+    robot = submission.robot
     if isinstance(submission.urdf, Absent):
-        missing["URDF"] = "no URDF was submitted"
-    elif robot is not None and robot.is_another(rubric.links):
+        missing["URDF"] = submission.urdf.reason
+    elif robot and robot.is_another(rubric.links):
         another = another_robot(rubric, robot)
         lacking = f"the robot has {_known_links_text(rubric, robot)}"
-        missing["URDF"] = another.mistake if another is not None else lacking
+        missing["URDF"] = another.mistake if another else lacking
     package = submission.package
-    if package is None:
+    if not package:
         missing["package"] = submission.no_package.message
     elif (
         package.name != rubric.package

@@ -40,7 +40,6 @@ _DROPPING = {
 
 # What is missing of these is nothing that could be inside of the element at the place.
 _OUTSIDE = ("link", "connection", "robot of the lab")
-_LOOKS = ("material", "color", "texture")
 
 
 def explain(
@@ -60,7 +59,8 @@ def explain(
     """
     if outcome.problem:  # the check has said it
         return outcome
-    mistake, dropping = outcome.mistake or outcome.message, _DROPPING.get(part, ())
+    mistake = outcome.mistake or outcome.message
+    dropping = _DROPPING.get(part, ())
     dropped = next(
         (
             reported
@@ -69,7 +69,7 @@ def explain(
         ),
         None,
     )
-    if dropped is not None:
+    if dropped:
         inner = next(_inside(dropped.location, problems, source), dropped)  # because of this
         message = f"{outcome.message}: {inner.message}"
         return outcome._replace(
@@ -100,7 +100,8 @@ def _without_looks(problems: Sequence[Problem]) -> list[Problem]:
     return [
         problem
         for problem in problems
-        if problem.kind is not urdf_problems.MISSPELT or problem.subject not in _LOOKS
+        if problem.kind is not urdf_problems.MISSPELT
+        or problem.subject not in ("material", "color", "texture")
     ]
 
 
@@ -129,7 +130,7 @@ def _inside(
     candidates = [
         reported for reported in problems if reported.kind in _INSIDE and reported.location != place
     ]
-    if place is None or source is None or not candidates:
+    if not place or not source or not candidates:
         return
     offsets = _element_offsets(place, source, is_of_link=is_of_link)
     for problem in candidates:
@@ -149,7 +150,8 @@ def _element_offsets(place: Location, source: Source, *, is_of_link: bool = Fals
     """
     if place.path != source.path:
         return range(0)
-    text, at = source.text, source.start_offset(place)
+    text = source.text
+    at = source.start_offset(place)
     start = text.rfind("<", 0, at + 1)
     if is_of_link and text.startswith("<visual", start):
         start = at = text.rfind("<link", 0, start)

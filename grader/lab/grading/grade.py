@@ -12,6 +12,8 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from grader.base.errors import InputError, MissingElement, NotDecided
+from grader.base.grouping import Strings
+from grader.base.names import closest
 from grader.base.problems import Problem, in_order
 from grader.base.slips import Slip
 from grader.base.text import counted_points, enumerated, quoted
@@ -30,7 +32,6 @@ if TYPE_CHECKING:
     from grader.lab.documents.evidence import EvidenceFile
     from grader.ros.urdf.conventions import Convention
 
-_EXPANDED = "the URDF is xacro: it was expanded, as xacro does before ROS 2 reads it"
 _NOT_EXPANDED = (
     "the URDF is xacro, but is loaded without xacro; everything but its loading is graded on "
     "its expansion"
@@ -39,8 +40,6 @@ _MAX_PICTURES = 50
 _MAX_UNREAD = 4
 _OF_COLOUR_OR_SHAPE = {"shows_box", "shows_cylinder", "shows_sphere", "shows_colour", "shows_grey"}
 _MIN_OF_CONVENTION = 2  # criteria that a convention decides
-_NO_HINTS = "no hints were searched, because reading this robot takes too much work"
-_ELSEWHERE = "the graded URDF is outside the graded package"
 
 
 def grade(
@@ -57,7 +56,7 @@ def grade(
 
     A single URDF is graded only on parts that need no more, unless it `is_one_of_class`: a class is
     graded on the same parts. Unless it `is_explained`, no note says what its failures have in
-    common.
+    common, or what hides the base.
     """
     is_whole = is_one_of_class or not submission.is_single
     chosen, notes = _choose_parts(rubric, submission, parts, is_whole=is_whole)
@@ -71,21 +70,23 @@ def grade(
             from grader.lab.grading.slips import judge_as_meant  # late: many submissions have none
 
             results, meant = judge_as_meant(rubric, submission, slips, results)
-    robot_owner = submission if meant is None else meant.submission
+    robot_owner = submission if not meant else meant.submission
     if any(result.is_lost for result in results):
         from grader.lab.grading.not_known import judge_known  # late: few elements are dropped
 
-        paying = {paid.payer for paid in meant.paid} if meant is not None else ()
-        results = judge_known(rubric, robot_owner, results, wanted, paying)
-        if meant is not None:  # hints begin with what it has
-            meant = meant._replace(results=judge_known(rubric, robot_owner, meant.results, wanted))
+        paying = {paid.payer for paid in meant.paid} if meant else ()
+        results = tuple(judge_known(rubric, robot_owner, results, wanted, paying))
+        if meant:  # hints begin with what it has
+            known = judge_known(rubric, robot_owner, meant.results, wanted)
+            meant = meant._replace(results=tuple(known))
     results = without_gifts(results, submission)
     problems = _find_problems(rubric, submission, chosen, meant)
     evidence, other_pictures = _find_evidence(rubric, submission, chosen if is_whole else ())
     notes.append(_note_on_unread(submission, evidence))
-    notes.append(_note_on_hidden_base(rubric, submission))
     by_convention: frozenset[str] = frozenset()
     if is_explained:
+        notes.append(_note_on_other_package(rubric, submission))
+        notes.append(_note_on_hidden_base(rubric, submission))
         note, by_convention = _explain_by_convention(rubric, robot_owner, results)
         notes.append(note)
     if (
@@ -93,7 +94,7 @@ def grade(
         and rubric.hints != "none"
         and any(result.is_lost for result in results)
     ):
-        notes.append(_NO_HINTS)
+        notes.append("no hints were searched, because reading this robot takes too much work")
     return Report(
         submission=submission,
         rubric=rubric,
@@ -103,7 +104,7 @@ def grade(
         evidence=evidence,
         other_pictures=other_pictures,
         notes=tuple(filter(None, notes)),
-        another_robot=another.mistake if another is not None else "",
+        another_robot=another.mistake if another else "",
         by_convention=by_convention,
         meant=meant,
     )
@@ -119,13 +120,12 @@ def _list_slips(submission: Submission) -> list[Slip]:
     """Return the slips in the files of a submission that may explain points that are not given."""
     if submission.is_costly:
         return []
-    slips: list[Slip] = []
+    slips = []
     if isinstance(submission.urdf, Read):
         # Late: robots that are right have none.
         from grader.ros.package.robot_readings import RobotReadings
 
-        around = submission.renewed().surroundings(Budget())
-        readings = RobotReadings(submission.urdf, around)
+        readings = RobotReadings(submission.urdf, submission.renewed().surroundings(Budget()))
         slips = [*readings.find_slips(), *submission.urdf.slips]
     packages = [submission.package, *submission.lab_packages.values()]
     for package in dict.fromkeys(filter(None, packages)):
@@ -145,13 +145,11 @@ def _find_problems(
     if isinstance(submission.urdf, Read):
         meshes = mesh_problems(submission.urdf, submission.packages, submission.tree)
         problems = in_order((*submission.urdf.problems, *meshes))
-    if meant is not None:
+    if meant:
         from grader.lab.grading.slips import problems_as_meant  # late, as above
 
         problems = in_order(problems_as_meant(problems, meant))
-    if submission.package is not None and any(
-        rubric.part(part).needs == "package" for part in chosen
-    ):
+    if submission.package and any(rubric.part(part).needs == "package" for part in chosen):
         # Late: a URDF on its own needs none of what reads a package.
         from grader.ros.package.found_problems import package_problems
 
@@ -161,7 +159,7 @@ def _find_problems(
 
 def _choose_parts(
     rubric: Rubric, submission: Submission, named: Sequence[str], *, is_whole: bool
-) -> tuple[tuple[str, ...], list[str]]:
+) -> tuple[Strings, list[str]]:
     """Return the graded parts, and notes for the report.
 
     What is not whole is graded only on parts that need a URDF.
@@ -175,7 +173,7 @@ def _choose_parts(
     chosen = tuple(part.id for part in parts if part.needs == "urdf" or is_whole)
     notes = [*submission.notes, *_notes_on_xacro(submission)]
     if _is_outside_of_package(submission):
-        notes.append(_ELSEWHERE)
+        notes.append("the graded URDF is outside the graded package")
     skipped = [part.id for part in parts if part.id not in chosen]
     if skipped:
         notes.append(_note_on_skipped(chosen, skipped))
@@ -184,14 +182,16 @@ def _choose_parts(
 
 def _note_on_skipped(chosen: Sequence[str], skipped: Sequence[str]) -> str:
     """Return a note on parts that are not graded because they need more than a URDF."""
-    only, verb = enumerated(chosen) or "nothing", "need" if len(skipped) > 1 else "needs"
+    only = enumerated(chosen) or "nothing"
+    verb = "need" if len(skipped) > 1 else "needs"
     return f"only {only} is graded: {enumerated(skipped)} {verb} the whole folder"
 
 
 def _is_outside_of_package(submission: Submission) -> bool:
     """Return whether the graded URDF is not in the folder of the graded package."""
-    package, path = submission.package, submission.path
-    if package is None or path is None:
+    package = submission.package
+    path = submission.path
+    if not package or path is None:
         return False
     return not path.startswith(f"{package.folder}/" if package.folder else "")
 
@@ -212,24 +212,25 @@ def _find_evidence(
 
     labelled_files = submission.labelled_files
     results = []
+    named_files = []
     known: set[str] = set()  # names of evidence that was searched
-    listed: set[str] = set()  # paths of files that are named
     for evidence in wanted:
         names = tuple(dict.fromkeys((*evidence.names, *_names_in_criteria(evidence, rubric))))
         files = find_evidence(labelled_files, names, submission.readable_documents)
         results.append(EvidenceResult(evidence, *files))
         known.update(names)
-        listed.update(file.path for file in (*files.files, *files.possible))
+        named_files += [*files.files, *files.possible]
     for row in manual:
         if row.check.function is evidence_shown and known.isdisjoint(row.arguments["names"]):
             names = row.arguments["names"]
             files = find_evidence(labelled_files, names, submission.readable_documents)
-            listed.update(file.path for file in (*files.files, *files.possible))
+            named_files += [*files.files, *files.possible]
+    listed = {file.path for file in named_files}
     others = [labelled for labelled in labelled_files if labelled.file.path not in listed]
     return tuple(results), as_evidence(others[:_MAX_PICTURES])
 
 
-def _names_in_criteria(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
+def _names_in_criteria(evidence: Evidence, rubric: Rubric) -> Strings:
     """Return the names of the criteria about a piece of evidence.
 
     A file that counts for a criterion is not missing.
@@ -245,17 +246,24 @@ def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) 
 
     It is empty if there are none.
     """
-    if (
-        all(result.files for result in evidence)
-        or (documents := submission.readable_documents) is None
-    ):
+    if all(result.files for result in evidence) or not (documents := submission.readable_documents):
         return ""
     from grader.lab.documents.evidence import DOCUMENTS
 
     unread = documents.named(DOCUMENTS)[1]
     if unread:
-        return f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}"
+        return f"not searched for evidence: {enumerated(map(str, unread), _MAX_UNREAD)}"
     return ""
+
+
+def _note_on_other_package(rubric: Rubric, submission: Submission) -> str:
+    """Return a note on a package that is not that of the lab, nor a misspelt one; else nothing."""
+    name = submission.package.name if submission.package else ""
+    wanted = list(filter(None, rubric.lab.package_names))
+    if not name or not wanted or name in wanted or closest(name, wanted):
+        return ""
+    names = enumerated(map(repr, wanted))
+    return f"this is the package {name!r}; the rubric {rubric.id} is for {names}"
 
 
 def _note_on_hidden_base(rubric: Rubric, submission: Submission) -> str:
@@ -267,7 +275,7 @@ def _note_on_hidden_base(rubric: Rubric, submission: Submission) -> str:
         row.check.name in _OF_COLOUR_OR_SHAPE and row.arguments["link"] == rubric.base
         for row in rubric.criteria
     )
-    if submission.robot is None or not is_asked:
+    if not submission.robot or not is_asked:
         return ""
     from grader.lab.checks.visuals import hiding_link  # late: it is loaded with the criteria
 
@@ -293,15 +301,16 @@ def _explain_by_convention(
     passed = set()
     decided = set()
     for result in results:
-        name, subject = result.criterion.id, result.criterion.check.subject
-        if subject == "robot" and result.is_lost:
+        name = result.criterion.id
+        check = result.criterion.check
+        if check.subject == "robot" and result.is_lost:
             lost.add(name)
-        if subject in ("urdf", "robot"):
+        if check.is_of_robot:
             decided.add(name)
             if result.outcome.status == "passed":
                 passed.add(name)
     convention = _find_convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None
-    if convention is None or not isinstance(submission.urdf, Read):
+    if not convention or not isinstance(submission.urdf, Read):
         return "", frozenset()
     reading = submission.urdf.reading._replace(robot=convention.robot)
     other = replace(submission, urdf=submission.urdf._replace(reading=reading))
@@ -320,7 +329,7 @@ def _explain_by_convention(
 def _find_convention(rubric: Rubric, submission: Submission) -> "Convention | None":
     """Return how all frames of a robot are turned or moved, compared with the reference."""
     robot = submission.robot
-    if robot is None or rubric.solution is None:
+    if not robot or not rubric.solution:
         return None
     from grader.ros.urdf.conventions import find_convention  # late: most robots lose few points
 
@@ -332,4 +341,8 @@ def _find_convention(rubric: Rubric, submission: Submission) -> "Convention | No
 def _notes_on_xacro(submission: Submission) -> list[str]:
     if not isinstance(submission.urdf, Read) or not submission.urdf.is_expanded:
         return []
-    return [_EXPANDED if submission.urdf.as_it_stands is None else _NOT_EXPANDED]
+    return [
+        "the URDF is xacro: it was expanded, as xacro does before ROS 2 reads it"
+        if not submission.urdf.as_it_stands
+        else _NOT_EXPANDED
+    ]

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.report import Result
+from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
@@ -14,10 +15,10 @@ from grader.ros.urdf.reader import read_with_dropped
 def judge_known(
     rubric: Rubric,
     submission: Submission,
-    results: tuple[Result, ...],
+    results: Iterable[Result],
     wanted: Collection[str],
     paying: Collection[str] = (),
-) -> tuple[Result, ...]:
+) -> Iterable[Result]:
     """Return the results with those of what is known, where an element is dropped.
 
     The first criterion that is lost and needs what is not known pays; without one, the first that
@@ -25,14 +26,28 @@ def judge_known(
     slips stay as they are.
     """
     known = _with_dropped(submission)
-    if known is None:
+    if not known:
         return results
-    lost = [result for result in results if result.is_lost and result.criterion.id not in paying]
+    results = tuple(results)
+    lost = [
+        result
+        for result in results
+        if result.is_lost and result.criterion.id not in paying and _is_of_robot(result.criterion)
+    ]
     judged = _with_payers(lost, decide(rubric, known, wanted))
     if not any(_pays(judged[result.criterion.id], result) for result in lost):
         for result in [each for each in lost if not judged[each.criterion.id].is_lost][:1]:
             judged[result.criterion.id] = result
-    return tuple(judged.get(result.criterion.id, result) for result in results)
+    return [judged.get(result.criterion.id, result) for result in results]
+
+
+def _is_of_robot(criterion: Criterion) -> bool:
+    """Return whether a criterion may fail for what is dropped: names do not depend on it."""
+    return (
+        "measure" in criterion.arguments
+        or criterion.arguments.get("of") == "values"
+        or criterion.check.subject not in ("package", "submission")
+    )
 
 
 def _with_dropped(submission: Submission) -> Submission | None:
@@ -41,7 +56,7 @@ def _with_dropped(submission: Submission) -> Submission | None:
     if not isinstance(urdf, Read):
         return None
     robot = read_with_dropped(urdf.reading, filter(None, [submission.distro]))
-    if robot is None:
+    if not robot:
         return None
     return replace(submission, urdf=urdf._replace(reading=urdf.reading._replace(robot=robot)))
 
@@ -61,9 +76,10 @@ def _with_payers(lost: Collection[Result], known: Iterable[Result]) -> dict[str,
     after = {result.criterion.id: result for result in known}
     names = {result.criterion.id for result in lost}
     payers: dict[str, str] = {}
-    judged: dict[str, Result] = {}
+    judged = {}
     for result in lost:
-        name, now = result.criterion.id, after[result.criterion.id]
+        name = result.criterion.id
+        now = after[result.criterion.id]
         if now.carried and now.carried not in names:
             payer = payers.setdefault(now.carried, name)
             now = now._replace(carried="" if payer == name else payer)

@@ -1,11 +1,13 @@
 """The report: the outcome and the points of every criterion. Renderers only lay it out."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader import __version__
+from grader.base.grouping import Strings
 from grader.base.problems import Problem
+from grader.base.records import Named
 from grader.base.slips import Slip
 from grader.base.source import Certainty, Edits, Location
 from grader.base.text import printable
@@ -22,7 +24,7 @@ INCOMPLETE_HINTS = "the search for hints ended at its limit: there may be more"
 _NOTHING = Decimal(0)
 
 
-class ManualMark(NamedTuple):
+class ManualMark(Named):
     """A manual mark or override.
 
     It has the points of a criterion, the name of the grader if given, and a comment.
@@ -33,14 +35,14 @@ class ManualMark(NamedTuple):
     comment: str = ""
 
 
-class ManualComment(NamedTuple):
+class ManualComment(Named):
     """A comment of a grader that changes no points, with the grader's name if given."""
 
     text: str
     by: str
 
 
-class Hint(NamedTuple):
+class Hint(Named):
     """A change of the submission that was tried.
 
     With it the criteria in `gains` pass, and none that passed fails.
@@ -53,8 +55,8 @@ class Hint(NamedTuple):
     cause: str = ""  # what is wrong: "the sign of the roll of the joint origin of 'right_wheel'"
     shown_by: str = ""  # the criterion that shows the hint; the others that it fixes name that one
     certainty: Certainty = "preferred"  # whether other edits were proven
-    after: tuple[str, ...] = ()  # the criteria whose hints have to be followed first
-    fixed_with: tuple[str, ...] = ()  # the criteria whose hints are enough together
+    after: Sequence[str] = ()  # the criteria whose hints have to be followed first
+    fixed_with: Sequence[str] = ()  # the criteria whose hints are enough together
 
 
 class Result(NamedTuple):
@@ -88,13 +90,18 @@ class Result(NamedTuple):
         )
 
     @property
+    def id(self) -> str:
+        """The id of the criterion."""
+        return self.criterion.id
+
+    @property
     def points(self) -> Decimal:
         """The points earned: those of the manual mark, else all or none.
 
         All points are earned if the check passed, an error is carried forward, or an adjustment
         gives them.
         """
-        if self.manual_mark is not None:
+        if self.manual_mark:
             return self.manual_mark.points
         is_given = self.outcome.status == "passed" or self.carried or self.criterion.is_given
         return self.criterion.points if is_given else _NOTHING
@@ -105,9 +112,9 @@ class Result(NamedTuple):
 
         It is empty if it does.
         """
-        if self.manual_mark is not None:
+        if self.manual_mark:
             return ""
-        if self.criterion.adjustment is not None:
+        if self.criterion.adjustment:
             return self.criterion.adjustment.message
         if not self.carried:
             return ""
@@ -131,26 +138,27 @@ class Result(NamedTuple):
     @property
     def is_open(self) -> bool:
         """Return whether the criterion still needs manual grading."""
-        return (
-            self.outcome.status == "pending" and self.manual_mark is None and not self.is_adjusted
-        )
+        return self.outcome.status == "pending" and not self.manual_mark and not self.is_adjusted
 
 
-class PaidSlip(NamedTuple):
+Results = tuple[Result, ...]  # in the order of the rubric
+
+
+class PaidSlip(Named):
     """A slip, and the criterion that loses its points for it."""
 
     slip: Slip
     payer: str
 
 
-class Meant(NamedTuple):
+class Meant(Named):
     """A submission with the words that are meant.
 
     It has the results on it, and the slips that it corrects.
     """
 
     submission: Submission
-    results: tuple[Result, ...]
+    results: Results
     paid: tuple[PaidSlip, ...]
 
 
@@ -162,7 +170,7 @@ class EvidenceResult(NamedTuple):
     possible: "tuple[EvidenceFile, ...]" = ()
 
 
-class Grade(NamedTuple):
+class Grade(Named):
     """A student's grade in a class.
 
     It has the points that count, None if excused, and the late penalty in them (0 or less).
@@ -175,7 +183,7 @@ class Grade(NamedTuple):
     is_final: bool = False
 
 
-class Report(NamedTuple):
+class Report(Named):
     """The points of one submission under one rubric, and everything that is said about them.
 
     `grade` makes it, `hinted` adds hints to its results, and a class adds marks and the grade of
@@ -196,12 +204,12 @@ class Report(NamedTuple):
 
     submission: Submission
     rubric: Rubric
-    parts: tuple[str, ...]  # the ids of the graded ones
-    results: tuple[Result, ...]  # one for each criterion of these parts, in the rubric's order
+    parts: Strings  # the ids of the graded ones
+    results: Results  # one for each criterion of these parts, in the rubric's order
     problems: tuple[Problem, ...] = ()  # of the URDF and, where a package is graded, of its files
     evidence: tuple[EvidenceResult, ...] = ()
     other_pictures: "tuple[EvidenceFile, ...]" = ()  # that no piece of evidence asks for
-    notes: tuple[str, ...] = ()  # sentences on how the submission was read
+    notes: Strings = ()  # sentences on how the submission was read
     another_robot: str = ""  # why the robot looks like that of another lab; empty if it does not
     by_convention: frozenset[str] = (
         frozenset()
@@ -219,7 +227,7 @@ class Report(NamedTuple):
         return f"<Report {printable(self.submission.id)}: {self.rubric.id}, {points}>"
 
     @property
-    def all_notes(self) -> tuple[str, ...]:
+    def all_notes(self) -> Strings:
         """The notes of the report.
 
         The first is on a robot that looks like another one, the last on hints that are
@@ -243,7 +251,7 @@ class Report(NamedTuple):
 
         It is None for an excused student.
         """
-        if self.grade is not None:
+        if self.grade:
             return self.grade.points
         return self.score
 
@@ -265,7 +273,7 @@ class Report(NamedTuple):
         return _NOTHING if is_decided else self.pending
 
     @property
-    def unearned(self) -> tuple[Result, ...]:
+    def unearned(self) -> Results:
         """The automatic criteria that did not pass, except adjusted ones and extra credit."""
         automatic = (
             result
@@ -321,7 +329,7 @@ class Report(NamedTuple):
         return next((one.outcome.message for one in errored), "")
 
 
-def without_gifts(results: Iterable[Result], submission: Submission) -> tuple[Result, ...]:
+def without_gifts(results: Iterable[Result], submission: Submission) -> Results:
     """Return results in which no adjustment gives points to a submission that could not be read."""
     if not submission.unread:
         return tuple(results)

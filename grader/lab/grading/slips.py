@@ -4,16 +4,16 @@ One criterion pays for each slip, and the others are judged on what the slip sur
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import starmap
 
 from grader.base.problems import Problem
 from grader.base.slips import Slip
-from grader.base.source import Location
 from grader.base.text import enumerated, sentence_end
 from grader.lab.checks.loading import list_with_lines, urdf_loads
 from grader.lab.checks.outcome import SLIP, Outcome
 from grader.lab.checks.xacro_source import xacro_uses
 from grader.lab.grading.deciding import decide
-from grader.lab.grading.report import Meant, PaidSlip, Result, sum_points
+from grader.lab.grading.report import Meant, PaidSlip, Result, Results, sum_points
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.edited import edited_files, with_files, with_urdf
 from grader.lab.submission.submission import Submission
@@ -24,11 +24,13 @@ _MAX_SLIPS = 12  # because each is graded without the others
 _MAX_NAMED = 3  # in a message
 
 _Results = Mapping[str, Result]
+_Slips = Sequence[Slip]
+_Judged = tuple[Results, Meant | None]
 
 
 def judge_as_meant(
-    rubric: Rubric, submission: Submission, slips: Sequence[Slip], written: tuple[Result, ...]
-) -> tuple[tuple[Result, ...], Meant | None]:
+    rubric: Rubric, submission: Submission, slips: _Slips, written: Sequence[Result]
+) -> _Judged:
     """Return the results of criteria with each slip of a submission paid by one of them.
 
     Also return what they were judged on. `written` are those on the words as they are written.
@@ -42,14 +44,15 @@ def judge_as_meant(
 class _Readings:
     """The results of a submission with some of its slips corrected, each set of them once."""
 
-    def __init__(self, rubric: Rubric, submission: Submission, written: tuple[Result, ...]) -> None:
-        self._rubric, self._submission = rubric, submission
+    def __init__(self, rubric: Rubric, submission: Submission, written: Sequence[Result]) -> None:
+        self._rubric = rubric
+        self._submission = submission
         self._written = {result.criterion.id: result for result in written}
         self._known: dict[tuple[Slip, ...], tuple[Submission, _Results]] = {
             (): (submission, self._written)
         }
 
-    def judged(self, slips: Sequence[Slip]) -> tuple[tuple[Result, ...], Meant | None]:
+    def judged(self, slips: _Slips) -> _Judged:
         """Return the results with those slips corrected that count."""
         counting = self._readable(slips)
         payers: dict[Slip, str] = {}
@@ -80,10 +83,10 @@ class _Readings:
         is_lower = sum_points(result.points for result in results) < before
         if is_lower and _is_of_robot(counting):
             return tuple(self._written.values()), None
-        paid = tuple(PaidSlip(slip, payer) for slip, payer in payers.items())
+        paid = tuple(starmap(PaidSlip, payers.items()))
         return tuple(results), Meant(submission, tuple(meant.values()), paid)
 
-    def _is_as_written(self, meant: Result, slips: Sequence[Slip]) -> bool:
+    def _is_as_written(self, meant: Result, slips: _Slips) -> bool:
         """Return whether a criterion judges the words as they are written.
 
         What xacro cannot read has no words that it uses: these are judged as they are meant.
@@ -94,7 +97,7 @@ class _Readings:
         is_unread = check.function is xacro_uses and all(slip.is_refused for slip in slips)
         return not is_unread
 
-    def _readable(self, slips: Sequence[Slip]) -> list[Slip]:
+    def _readable(self, slips: _Slips) -> list[Slip]:
         """Return the slips whose edits fit together."""
         fitting: list[Slip] = []
         for slip in slips:
@@ -103,7 +106,7 @@ class _Readings:
                 fitting.append(slip)
         return fitting
 
-    def _read(self, slips: Sequence[Slip]) -> tuple[Submission, _Results]:
+    def _read(self, slips: _Slips) -> tuple[Submission, _Results]:
         key = tuple(slips)
         if key not in self._known:
             submission = _corrected(self._submission, key)
@@ -111,7 +114,7 @@ class _Readings:
             self._known[key] = submission, {result.criterion.id: result for result in results}
         return self._known[key]
 
-    def _payer(self, slip: Slip, slips: Sequence[Slip]) -> str | None:
+    def _payer(self, slip: Slip, slips: _Slips) -> str | None:
         """Return the criterion that pays for a slip beside the others.
 
         It is None if the slip does not count: it changes nothing, or a criterion fails with the
@@ -146,7 +149,7 @@ class _Readings:
 
         The first choice is that the URDF loads, then come failures, then all other results.
         """
-        loading: list[Result] = []
+        loading = []
         if _list_parts(before_submission) != _list_parts(after_submission):
             loading = [
                 payer for payer in before.values() if payer.criterion.check.function is urdf_loads
@@ -154,12 +157,14 @@ class _Readings:
         failed = [result for result in changed if result.outcome.status == "failed"]
         return next((payer.criterion.id for payer in (*loading, *failed, *changed)), None)
 
-    def _paid(self, name: str, paid: Sequence[Slip], slips: Sequence[Slip]) -> Result:
+    def _paid(self, name: str, paid: _Slips, slips: _Slips) -> Result:
         """Return the failure of a criterion that pays for slips."""
         others = [other for other in slips if other not in paid]
-        written, meant = self._read(others)[1][name], self._read(slips)[1][name]
-        outcome, first = written.outcome, paid[0]
-        message = enumerated(list(dict.fromkeys(slip.reaction for slip in paid)), _MAX_NAMED)
+        written = self._read(others)[1][name]
+        meant = self._read(slips)[1][name]
+        outcome = written.outcome
+        first = paid[0]
+        message = enumerated(dict.fromkeys(slip.reaction for slip in paid), _MAX_NAMED)
         failure = Outcome(
             "failed", message, location=first.location, mistake=first.reaction, problem=message
         )
@@ -182,7 +187,7 @@ class _Readings:
 
 
 def _correction_text(slips: Iterable[Slip]) -> str:
-    places: list[tuple[str, Location]] = []
+    places = []
     for slip in slips:
         path = slip.location.path
         changed = [edit.location for edit in slip.edits if edit.old and edit.path == path]
@@ -211,7 +216,7 @@ def problems_as_meant(problems: Iterable[Problem], meant: Meant) -> Iterator[Pro
         yield Problem(xml_problems.RECOVERED, paid.slip.assumption, paid.slip.location)
 
 
-def _corrected(submission: Submission, slips: Sequence[Slip]) -> Submission:
+def _corrected(submission: Submission, slips: _Slips) -> Submission:
     """Return a submission with the words that are meant."""
     files = edited_files(submission, [edit for slip in slips for edit in slip.edits])
     assert files is not None
@@ -220,7 +225,7 @@ def _corrected(submission: Submission, slips: Sequence[Slip]) -> Submission:
     if (
         isinstance(urdf, Read)
         and _is_of_robot(slips)
-        and (submission.package is None or not urdf.is_expanded)
+        and (not submission.package or not urdf.is_expanded)
     ):
         return with_urdf(submission, files)
     return with_files(submission, files)
@@ -240,7 +245,7 @@ def _is_changed(before: Result, after: Result) -> bool:
 def _list_parts(submission: Submission) -> tuple[frozenset[str], frozenset[str]]:
     """Return the names of the links and joints of the robot."""
     robot = submission.robot
-    if robot is None:
+    if not robot:
         return frozenset(), frozenset()
     links = frozenset(link.name for link in robot.links)
     return links, frozenset(joint.name for joint in robot.joints)

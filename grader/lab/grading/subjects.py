@@ -3,11 +3,12 @@
 They are the URDF of a submission, its robot in a pose, its package, and the reference.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import radians
 from typing import Any
 
 from grader.base.errors import MissingElement
+from grader.base.grouping import StringsByName
 from grader.base.problems import Problem
 from grader.base.quantities import point
 from grader.base.source import Source
@@ -21,7 +22,9 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.ros.urdf.model import Joint
 
-_SLIDING, _TURNING = ("prismatic",), ("revolute", "continuous")
+_SLIDING = ("prismatic",)
+_TURNING = ("revolute", "continuous")
+_Positions = Mapping[str, float]  # of joints
 
 
 class Subjects:
@@ -31,7 +34,7 @@ class Subjects:
     """
 
     def __init__(
-        self, rubric: Rubric, submission: Submission, arguments: Mapping[str, str] | None = None
+        self, rubric: Rubric, submission: Submission, arguments: StringsByName | None = None
     ) -> None:
         """Take the arguments of launch files, `arguments`.
 
@@ -40,17 +43,17 @@ class Subjects:
         solution = rubric.solution if rubric.compares_with_reference else None
         if arguments:
             submission = submission.under(arguments)
-            solution = solution.under(arguments) if solution is not None else None
+            solution = solution.under(arguments) if solution else None
         self._rubric = rubric
         self._under: dict[tuple[tuple[str, str], ...], Subjects] = {}
         self.submission = submission
-        self.problems: tuple[Problem, ...] = ()
+        self.problems: Sequence[Problem] = ()
         self.robot: Configuration | None = None
         self.source: Source | None = None
         self._known: dict[Subject, object] = {"submission": submission}
         self._packaged: dict[str, Submission] = {}
         self._posed: dict[tuple[tuple[str, float], ...], Configuration] = {}
-        if solution is not None:
+        if solution:
             self._known["reference"] = self._with_transforms(solution.robot, solution)
         if isinstance(submission.urdf, Read):
             self._take_urdf(submission.urdf)
@@ -65,7 +68,7 @@ class Subjects:
                 problem for problem in reading.problems if problem.kind.effect != "rejects"
             ]
             self.problems = tuple(remaining)
-        if reading.robot is not None:
+        if reading.robot:
             robot = Configuration(reading.robot, is_guarded=bool(reading.unresolved))
             reading = reading._replace(robot=robot.robot)
             self.robot = self._with_transforms(robot, self.submission)
@@ -80,7 +83,7 @@ class Subjects:
             return robot
         submission = owner if isinstance(owner, Submission) else owner.submission
         package = submission.package
-        if package is None:
+        if not package:
             return robot
         from grader.ros.package.static_transforms import (
             with_transforms,  # late: few rubrics ask for them
@@ -89,7 +92,7 @@ class Subjects:
         known = with_transforms(robot.known, package, paths, submission.source)
         return Configuration(known, is_guarded=True)
 
-    def under(self, arguments: Mapping[str, str]) -> "Subjects":
+    def under(self, arguments: StringsByName) -> "Subjects":
         """Return what is examined under launch arguments, which is read once."""
         if not arguments:
             return self
@@ -105,7 +108,8 @@ class Subjects:
 
         Raises MissingElement or NotDecided for what the submission does not have.
         """
-        known, at = self._known, criterion.at
+        known = self._known
+        at = criterion.at
         if criterion.package:
             known = {**known, "submission": self._with_package(criterion.package)}
         subjects = [
@@ -127,12 +131,12 @@ class Subjects:
             self._packaged[name] = self.submission.with_package(name)
         return self._packaged[name]
 
-    def pose_text(self, at: Mapping[str, float]) -> str:
+    def pose_text(self, at: _Positions) -> str:
         """Return the positions of joints that are there.
 
         For example, this is 'joint_2' at 40 degrees and 'slide' at 0.1 m.
         """
-        assert self.robot is not None
+        assert self.robot
         joints = joints_at(self.robot, at)
         return enumerated(
             [f"{quoted(joint.name)} at {point((value,))} {unit}" for joint, value, unit in joints]
@@ -147,11 +151,11 @@ class Subjects:
 
         Raises MissingElement or NotDecided for a selector that names no link, or several.
         """
-        if self.robot is None or "reference" in check.examined:
+        if not self.robot or "reference" in check.examined:
             return arguments
         return {key: without_selectors(value, self.robot) for key, value in arguments.items()}
 
-    def _pose_robot(self, robot: Configuration, at: Mapping[str, float]) -> Configuration:
+    def _pose_robot(self, robot: Configuration, at: _Positions) -> Configuration:
         key = tuple(at.items())
         if key not in self._posed:
             joints = [(_find_joint(robot, name), value) for name, value in key]
@@ -187,7 +191,7 @@ def check_selectors(robot: Configuration, criterion: Criterion) -> None:
     without_selectors([dict(criterion.arguments), *carried, joints], robot)
 
 
-def joints_at(robot: Configuration, at: Mapping[str, float]) -> list[tuple[Joint, float, str]]:
+def joints_at(robot: Configuration, at: _Positions) -> list[tuple[Joint, float, str]]:
     """Return the joints that a criterion puts at positions.
 
     Each has the position and its unit, m or degrees.
@@ -208,11 +212,11 @@ def _find_joint(robot: Configuration, name: str) -> Joint:
         named = robot.selected_name(name)
     if named != name and not name.startswith(JOINT_OF):
         joint_above = robot.parent_joints.get(named)
-        if joint_above is None:
+        if not joint_above:
             raise MissingElement("joint", name, message=f"no joint moves {name}")
         return joint_above
     joint = robot.joint(named)
-    if joint.type not in (*_TURNING, *_SLIDING):
+    if joint.type not in (_TURNING + _SLIDING):
         at = joint.location and joint.location._replace(attribute="type")
         message = (
             f"the joint {quoted(named)} is {joint.type or 'of no type'}; it should turn or slide"
@@ -241,7 +245,7 @@ def _check_name(robot: Configuration, name: str) -> None:
     joints = [
         joint
         for joint in robot.known.joints
-        if joint.name == name and joint.type in (*_TURNING, *_SLIDING)
+        if joint.name == name and joint.type in (_TURNING + _SLIDING)
     ]
     if len(joints) > 1:
         message = f"{len(joints)} joints are called {quoted(name)}; each needs a name of its own"

@@ -1,16 +1,16 @@
 """Edits that hints propose, and what they gain."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from os.path import commonprefix
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.source import Certainty, Edits
 
 MAX_IN_HINT = 4  # edits, links, criteria or places that a hint names
 
 
-class Proposal(NamedTuple):
+class Proposal(Named):
     """An edit that may undo a mistake, in the words and with the order in which it is tried.
 
     The generators of `generators.py` make proposals from the difference to the reference solution,
@@ -49,7 +49,7 @@ class Proposal(NamedTuple):
 Proposals = Iterator[Proposal]
 
 
-class FoundHint(NamedTuple):
+class FoundHint(Named):
     """What a hint says.
 
     This is an edit that gains points when it is graded, or words for a part that is missing.
@@ -59,7 +59,7 @@ class FoundHint(NamedTuple):
     gains: Mapping[str, Decimal]  # the criteria that pass with it, each with the points
     certainty: Certainty = "preferred"
     # the edits of the earlier hints that it needs: the gains are those after them
-    after: tuple[Edits, ...] = ()
+    after: Sequence[Edits] = ()
     words: str = ""  # that say what is missing, for which there is no edit
     # another edit that cannot be told apart: both are named, neither is made
     alternative: Proposal | None = None
@@ -68,7 +68,7 @@ class FoundHint(NamedTuple):
     @property
     def edits(self) -> Edits:
         """The edits to make."""
-        if self.alternative is None:
+        if not self.alternative:
             return self.proposal.edits
         return ()
 

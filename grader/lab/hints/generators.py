@@ -8,12 +8,13 @@ takes the best, so that a later stage is asked only for what the earlier ones le
 and joints get hints in words: no edit writes them.
 """
 
-import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from functools import cached_property
+from itertools import starmap
 from typing import TYPE_CHECKING
 
+from grader.base.patterns import on_use
 from grader.base.source import Edit, Edits
 from grader.base.text import enumerated, in_backticks, texts_in
 from grader.lab.hints.edits import MAX_IN_HINT, FoundHint, Proposal
@@ -41,8 +42,11 @@ if TYPE_CHECKING:
 
 _RAW_XACRO = "the URDF contains xacro, but is loaded without xacro"
 _MAX_LINKS = 40
-_TAG = re.compile(r"</?([A-Za-z][\w:]*)")
+_TAG = on_use(r"</?([A-Za-z][\w:]*)")
 _MAX_SIMILAR = 2
+_Generators = Iterator[Iterable[Proposal]]  # each of one kind
+_Criteria = Mapping[str, Criterion]  # by id
+_Parts = list[MissingPart]
 
 
 class Situation:
@@ -62,20 +66,21 @@ class Situation:
 
         `reference` and `package` give the robot and packages of the reference solution.
         """
-        self.submission, self.reference_package = submission, package
-        self.reading: Reading | None = None
-        self.draft: Draft | None = None
-        self.difference: RobotDifference | None = None
+        self.submission = submission
+        self.reference_package = package
+        self.reading = None
+        self.draft = None
+        self.difference = None
         if isinstance(submission.urdf, Read):
             self.reading = submission.urdf.loaded
             self.draft = Draft.of(submission.urdf.reading)
-        if self.draft is not None and not self.draft.robot.is_foreign(wanted):
+        if self.draft and not self.draft.robot.is_foreign(wanted):
             self.difference = RobotDifference(self.draft, reference or self.draft)
 
     @cached_property
     def exchanges(self) -> list[Piece]:
         """The pieces that exchange ends of joints."""
-        if self.difference is not None:
+        if self.difference:
             return exchanges(self.difference)
         return []
 
@@ -99,7 +104,7 @@ class Situation:
 
     def own_chain(self, link: object) -> Iterator[str]:
         """Yield a link, and those above it that only the student's robot has."""
-        if self.draft is None:
+        if not self.draft:
             return
         parents = {joint.child: joint.parent for joint in self.draft.robot.joints}
         while isinstance(link, str):
@@ -112,37 +117,36 @@ _Lost = Sequence[Criterion]
 Stage = Callable[[Situation, _Lost], Iterator[Iterable[Proposal]]]
 
 
-def _reference_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+def _reference_edits(situation: Situation, lost: _Lost) -> _Generators:
     """Yield what undoes a slip, then what differs from elsewhere.
 
     It first comes from the other side of the robot, then from the reference.
     """
-    draft, difference = situation.draft, situation.difference
-    subjects = {criterion.check.subject for criterion in lost}
-    if situation.reading is not None and draft is not None and "urdf" in subjects:
+    draft = situation.draft
+    difference = situation.difference
+    if situation.reading and draft and any(one.check.subject == "urdf" for one in lost):
         yield _repairs(situation.reading)
         yield _with_xacro(situation.submission)
-    if draft is not None and difference is not None and subjects & {"urdf", "robot"}:
+    if draft and difference and any(one.check.is_of_robot for one in lost):
         links = _list_links(lost, difference)
         yield draft.corrections([*difference.names, *JOINT_TYPES])
         yield _proposals(situation, situation.exchanges)
         # Those of the links that criteria name come first: there may be more than can be tried.
-        pieces = _pieces_by_link(difference.pieces, links or [])
-        yield _proposals(situation, pieces, links)
+        yield _proposals(situation, _pieces_by_link(difference.pieces, links or []), links)
         # these rarely find a mistake
         yield _proposals(situation, in_another_unit(difference))
         yield _proposals(situation, of_siblings(difference, links or ()))
 
 
-def _package_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+def _package_edits(situation: Situation, lost: _Lost) -> _Generators:
     """The edits of the files of a package, by the kinds of files that checks look at."""
     by_package: dict[str, list[Criterion]] = {}
     for criterion in lost:
-        if criterion.check.subject not in ("urdf", "robot"):
+        if not criterion.check.is_of_robot:
             by_package.setdefault(criterion.package, []).append(criterion)
     for name, criteria in by_package.items():
         submission = situation.submission.with_package(name) if name else situation.submission
-        if submission.package is not None:
+        if submission.package:
             # Late: a robot on its own needs none.
             from grader.lab.hints.package_edits import package_proposals
 
@@ -155,7 +159,7 @@ def _package_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Propo
         yield from _name_edits(situation, criteria)
 
 
-def _name_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+def _name_edits(situation: Situation, lost: _Lost) -> _Generators:
     """Yield edits of names that do not agree, then of parameters, which rarely are the mistake."""
     for check in ("names_agree", "parameter_is"):
         for criterion in lost:
@@ -171,23 +175,22 @@ def _name_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal
                 yield value_proposals(situation.submission, criterion.arguments)
 
 
-def _own_number_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+def _own_number_edits(situation: Situation, lost: _Lost) -> _Generators:
     """The student's own numbers with another sign, order or unit."""
-    if situation.difference is not None:
+    if situation.difference:
         of_robot = [criterion for criterion in lost if criterion.check.subject == "robot"]
         links = _list_links(of_robot, situation.difference)
         yield _proposals(situation, of_own(situation.difference, links or ()))
         for criterion in of_robot:
             if criterion.check.name == "stands_level":
-                on, base = criterion.arguments["on"], criterion.arguments.get("base", "")
+                on = criterion.arguments["on"]
+                base = criterion.arguments.get("base", "")
                 yield _proposals(situation, leveled_supports(situation.difference, on, base))
 
 
-def _whole_link_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
+def _whole_link_edits(situation: Situation, lost: _Lost) -> _Generators:
     """All values of the reference of a link and its joint, or of one element."""
-    if situation.difference is not None and any(
-        criterion.check.subject == "robot" for criterion in lost
-    ):
+    if situation.difference and any(criterion.check.subject == "robot" for criterion in lost):
         links = _list_links(lost, situation.difference)
         yield _proposals(situation, whole_links(situation.difference), links)
         yield _proposals(situation, whole_elements(situation.difference), links)
@@ -195,7 +198,7 @@ def _whole_link_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Pr
 
 # What is tried, in this order; the reference and the package again, after the edits that were
 # found.
-STAGES: tuple[Stage, ...] = (
+STAGES = (
     _reference_edits,
     _package_edits,
     _own_number_edits,
@@ -217,14 +220,14 @@ def _proposals(
 ) -> Iterator[Proposal]:
     """Yield the edits of the text that pieces of these links stand for."""
     draft = situation.draft
-    assert draft is not None
+    assert draft
     for piece in pieces:
         if _is_left_out(piece, situation, links):
             continue
         shared = draft.shared(piece.sets)
         for way, edits in enumerate(draft.ways(piece.sets)):
             if edits or piece.edits:
-                every = (*edits, *piece.edits)
+                every = edits + piece.edits
                 yield Proposal(every, piece.cause, piece.link, piece.rank, way, shared)
 
 
@@ -240,10 +243,11 @@ def _list_links(criteria: Iterable[Criterion], difference: RobotDifference) -> l
     It is None if all may.
     """
     links: dict[str, None] = {}
-    robot, reference = difference.draft.robot, difference.reference.robot
+    robot = difference.draft.robot
+    reference = difference.reference.robot
     posed = Configuration(robot)
     for criterion in criteria:
-        if criterion.check.subject not in ("urdf", "robot"):
+        if not criterion.check.is_of_robot:
             continue
         in_arguments = map(posed.selected_or_name, texts_in(criterion.arguments))
         named = [name for name in in_arguments if reference.has_link(name) or robot.has_link(name)]
@@ -254,8 +258,8 @@ def _list_links(criteria: Iterable[Criterion], difference: RobotDifference) -> l
             while link is not None and link not in links:
                 links[link] = None
                 joint = posed.parent_joints.get(link)
-                link = joint.parent if joint is not None else None
-    return [*links][:_MAX_LINKS]
+                link = joint.parent if joint else None
+    return list(links)[:_MAX_LINKS]
 
 
 def _repairs(reading: Reading) -> Iterator[Proposal]:
@@ -266,7 +270,7 @@ def _repairs(reading: Reading) -> Iterator[Proposal]:
 
     repaired = repair(reading.source.text)
     if not repaired.is_lossy:
-        edits = tuple(reading.source.edit(*change) for change in repaired.changes)
+        edits = tuple(starmap(reading.source.edit, repaired.changes))
         yield Proposal(edits, _syntax_in_words(edits))
 
 
@@ -286,15 +290,15 @@ def _syntax_in_words(edits: Edits) -> str:
 def _with_xacro(submission: Submission) -> Iterator[Proposal]:
     """Yield edits that let xacro expand the URDF, where it is xacro that is loaded without it."""
     urdf = submission.urdf
-    if not isinstance(urdf, Read) or urdf.as_it_stands is None:
+    if not isinstance(urdf, Read) or not urdf.as_it_stands:
         return
     from grader.ros.python.python_file import with_xacro  # late: most URDFs are no such file
 
     package = submission.package
-    if package is not None:
+    if package:
         for path in package.launch_files:
             source = submission.source(package.path(path))
-            if source is not None:
+            if source:
                 yield from (Proposal(edits, _RAW_XACRO) for edits in with_xacro(source))
     if not urdf.path.endswith(".xacro"):
         renamed = f"{urdf.path.removesuffix('.urdf')}.urdf.xacro"
@@ -318,7 +322,7 @@ def leaves_others(
 def missing_hints(
     difference: RobotDifference | None,
     written: Draft | None,
-    criteria: Mapping[str, Criterion],
+    criteria: _Criteria,
     lost: Mapping[str, Decimal],
 ) -> dict[str, FoundHint]:
     """Return a hint in words for each missing link with its joint.
@@ -327,7 +331,7 @@ def missing_hints(
 
     `difference` is that of the robot after all edits, `written` is the robot before them.
     """
-    if difference is None or written is None or difference.draft is difference.reference:
+    if not difference or not written or difference.draft is difference.reference:
         return {}
     hints = _hints_of_links(difference, written, criteria, lost)
     loading = [name for name in lost if criteria[name].check.subject == "urdf"]
@@ -344,15 +348,16 @@ def missing_hints(
 def _hints_of_links(
     difference: RobotDifference,
     written: Draft,
-    criteria: Mapping[str, Criterion],
+    criteria: _Criteria,
     lost: Mapping[str, Decimal],
 ) -> dict[str, FoundHint]:
     """Return a hint for each missing link with its joints, by the criterion that shows it."""
-    hints: dict[str, FoundHint] = {}
+    hints = {}
     # links first, each with its joints
     left = sorted(difference.missing, key=lambda part: part.tag, reverse=True)
     while left:
-        link, is_link = left[0].link, left[0].tag == "link"
+        link = left[0].link
+        is_link = left[0].tag == "link"
         parts = [part for part in left if part.link == link or (is_link and part.parent == link)]
         left = [part for part in left if part not in parts]
         about_link = _criteria_about(link, [name for name in lost if name not in hints], criteria)
@@ -361,9 +366,7 @@ def _hints_of_links(
     return hints
 
 
-def _criteria_about(
-    link: str, names: Sequence[str], criteria: Mapping[str, Criterion]
-) -> list[str]:
+def _criteria_about(link: str, names: Sequence[str], criteria: _Criteria) -> list[str]:
     """Return the criteria of the robot that examine a link, else those that name it anywhere."""
     of_robot = [name for name in names if criteria[name].check.subject == "robot"]
     about_link = [name for name in of_robot if criteria[name].arguments.get("link") == link]
@@ -372,7 +375,7 @@ def _criteria_about(
     return [name for name in of_robot if link in texts_in(criteria[name].arguments)]
 
 
-def _hint_of_joints(written: Draft, joints: list[MissingPart]) -> FoundHint:
+def _hint_of_joints(written: Draft, joints: _Parts) -> FoundHint:
     """Return the hint on missing joints without which the URDF does not load."""
     if len(joints) == 1:
         return _hint_of_parts(written, joints)
@@ -381,16 +384,16 @@ def _hint_of_joints(written: Draft, joints: list[MissingPart]) -> FoundHint:
     return FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
 
 
-def _missing_joints(difference: RobotDifference) -> list[MissingPart]:
+def _missing_joints(difference: RobotDifference) -> _Parts:
     """Return the missing joints between links that exist."""
     has_link = difference.draft.robot.has_link
     return [part for part in difference.missing if has_link(part.link) and has_link(part.parent)]
 
 
-def _hint_of_parts(written: Draft, parts: list[MissingPart]) -> FoundHint:
+def _hint_of_parts(written: Draft, parts: _Parts) -> FoundHint:
     first = parts[0].link if parts[0].tag == "link" else ""
     causes = enumerated([_cause_of_part(part, first) for part in parts])
-    parts_in_words = enumerated([_part_in_words(part) for part in parts])
+    parts_in_words = enumerated(map(_part_in_words, parts))
     words = f"add {parts_in_words}{_lines_of_similar(written, parts)}"
     verb = "is" if len(parts) == 1 else "are"
     return FoundHint(Proposal((), f"{causes} {verb} missing", parts[0].link), {}, words=words)
@@ -411,9 +414,9 @@ def _part_in_words(part: MissingPart) -> str:
     return f"a {part.joint_type} joint from {part.parent!r} to {part.link!r}"
 
 
-def _lines_of_similar(draft: Draft, parts: list[MissingPart]) -> str:
+def _lines_of_similar(draft: Draft, parts: _Parts) -> str:
     """Return where the first elements like the missing ones are."""
-    lines: set[int] = set()
+    lines = set()
     for part in parts:
         if part.tag == "link":
             like = next(draft.links(), None)

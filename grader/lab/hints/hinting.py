@@ -5,9 +5,10 @@ from contextlib import suppress
 from decimal import Decimal
 from functools import partial
 from itertools import chain, takewhile
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, cast
 
 from grader.base.errors import InputError
+from grader.base.records import Named
 from grader.base.source import Edit, Edits, Location, Source
 from grader.base.text import counted, enumerated
 from grader.files.limits import ROBOT_ENDINGS
@@ -18,7 +19,7 @@ from grader.lab.hints.robot_draft import Draft
 from grader.lab.hints.search import HintSearch, Trials, hints_on_slips, judged_results, sum_costs
 from grader.lab.rubric.hint_levels import HintLevel
 from grader.lab.rubric.rubric import ReferenceSolution
-from grader.lab.submission.edited import content, edited_files, with_files
+from grader.lab.submission.edited import edited_files, text_of, with_files
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 
@@ -30,9 +31,10 @@ if TYPE_CHECKING:
 _MAX_LINES = 6
 _IMPORTS = ("import ", "from ")
 _MAX_TEXT = 240  # characters of a changed text
+_Shown = Mapping[Edits, str]  # the criteria that show edits
 
 
-class _HintedReport(NamedTuple):
+class _HintedReport(Named):
     """A report with hints, and the edits of all that fit together.
 
     It also has the types of exceptions that cost other hints.
@@ -43,7 +45,7 @@ class _HintedReport(NamedTuple):
     faults: list[str]
 
 
-class FixedFiles(NamedTuple):
+class FixedFiles(Named):
     """The files of a submission that all proven edits change, and the report on the result.
 
     A file that is gone is None.
@@ -67,7 +69,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
     solution = report.rubric.solution
     trials = Trials(report.rubric, submission, judged_results(report))
     reference = _draft(solution), partial(_package, solution)
-    slips = hints_on_slips(report.meant)
+    slips = hints_on_slips(report)
     search = HintSearch(trials, *reference, report.by_convention, slips).run()
     costs = sum_costs(results)
     # Of several hints with which a criterion passes, it shows the first.
@@ -78,7 +80,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
     entries = {
         found_hint.edits: _entry(found_hint, shown, results, costs) for found_hint in showing
     }
-    hints: dict[str, Hint] = {}
+    hints = {}
     for name, found_hint in {**search.missing, **shown}.items():
         if found_hint in slips and found_hint.words:
             continue  # the message says what is missing, and the student writes it
@@ -97,7 +99,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
 def _hint_for(
     name: str,
     found_hint: FoundHint,
-    entries: Mapping[Edits, str],
+    entries: _Shown,
     results: Mapping[str, Result],
     level: HintLevel,
     submission: Submission,
@@ -122,7 +124,7 @@ def _hint_for(
 
 
 def _hints_of_others(
-    results: Iterable[Result], search: HintSearch, entries: Mapping[Edits, str]
+    results: Iterable[Result], search: HintSearch, entries: _Shown
 ) -> dict[str, Hint]:
     """Return the hints of criteria that pass only after several edits, which other ones show.
 
@@ -143,7 +145,7 @@ def _hints_of_others(
     return hints
 
 
-def _list_entries(hints_edits: Iterable[Edits], entries: Mapping[Edits, str]) -> tuple[str, ...]:
+def _list_entries(hints_edits: Iterable[Edits], entries: _Shown) -> Sequence[str]:
     """Return the criteria that show the hints with these edits, each once."""
     return tuple(dict.fromkeys(entries[edits] for edits in hints_edits if edits in entries))
 
@@ -153,7 +155,7 @@ def _written(hints: Sequence[FoundHint]) -> list[FoundHint]:
 
     None of them is left to words, and none needs such a hint.
     """
-    kept: list[FoundHint] = []
+    kept = []
     cut: set[Edits] = set()
     for one in hints:
         is_left_to_words = bool(one.words) or any(map(_loses_expression, one.edits))
@@ -176,7 +178,8 @@ def _loses_expression(edit: Edit) -> bool:
 
 def fixed(hinted_report: _HintedReport, submission: Submission) -> FixedFiles:
     """Return the files with all proven edits that fit together, graded again."""
-    report, why_nothing = hinted_report.report, "no edit that was tried gains points"
+    report = hinted_report.report
+    why_nothing = "no edit that was tried gains points"
     if not report.hints_complete:
         why_nothing = "the search for edits ended at its limit before it found one"
     if hinted_report.faults:
@@ -204,7 +207,8 @@ def _entry(
     """
 
     def rank(name: str) -> tuple[bool, bool, bool, Decimal]:
-        where, edit = results[name].outcome.location, hint.edits[0]
+        where = results[name].outcome.location
+        edit = hint.edits[0]
         is_there = where is not None and (where.path, where.line) == (edit.path, edit.line)
         is_of_robot = results[name].criterion.check.subject != "urdf"
         cost = costs.get(name, hint.gains[name])
@@ -216,7 +220,7 @@ def _entry(
 
 def _first_at(hint: FoundHint, where: Location | None) -> FoundHint:
     """Return a hint with the edits in the line of the failure first, and imports last."""
-    place = (where.path, where.line) if where is not None else None
+    place = (where.path, where.line) if where else None
 
     def rank(edit: Edit) -> tuple[bool, bool, str, int, int]:
         is_import = not edit.old and edit.new.startswith(_IMPORTS)
@@ -230,10 +234,11 @@ def _first_at(hint: FoundHint, where: Location | None) -> FoundHint:
 def _hint(hint: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
     at = result.outcome.location or Location("", 1, 1)
     if hint.edits:  # of two alternatives, there are none
-        first, where = hint.edits[0], result.outcome.location
+        first = hint.edits[0]
+        where = result.outcome.location
         # A line that is missing has no place of its own.
         is_line = "\n" in first.new and not first.old and not first.path.endswith(ROBOT_ENDINGS)
-        if not (is_line and where is not None and where.path == first.path):
+        if not (is_line and where and where.path == first.path):
             at = first.location
     shown = (hint.edits, hint.proposal.cause) if keeps_edits else ((), "")
     return Hint(text, at, hint.gains, *shown, shown_by, hint.certainty)
@@ -241,7 +246,7 @@ def _hint(hint: FoundHint, text: str, shown_by: str, result: Result, *, keeps_ed
 
 def _draft(reference: ReferenceSolution | None) -> Draft | None:
     """Return the robot of the reference solution."""
-    if reference is None:
+    if not reference:
         return None
     with suppress(InputError):
         return Draft.of(reference.reading)
@@ -253,7 +258,7 @@ def _package(reference: ReferenceSolution | None, name: str) -> "Package | None"
 
     If the rubric has several, it is the one of this name.
     """
-    if reference is None:
+    if not reference:
         return None
     with suppress(InputError):
         if name:
@@ -270,7 +275,7 @@ def message(
     `earlier` are criteria whose hints come first.
     """
     text = _clause(hint, level, submission)
-    if hint.equal is not None:
+    if hint.equal:
         other = _clause(FoundHint(hint.equal, {}), level, submission)
         if other != text:
             text = f"{text}; or {other}"
@@ -284,7 +289,7 @@ def _clause(hint: FoundHint, level: HintLevel, submission: Submission) -> str:
     if hint.words:
         words = {"edit": hint.words, "cause": hint.proposal.cause}
         return words.get(level, "a part is missing")
-    if hint.alternative is not None:
+    if hint.alternative:
         first = _clause(hint._replace(alternative=None), level, submission)
         other_found = hint._replace(proposal=hint.alternative, alternative=None)
         second = _clause(other_found, level, submission)
@@ -298,7 +303,7 @@ def _clause(hint: FoundHint, level: HintLevel, submission: Submission) -> str:
     return f"check {_texts_to_check(hint.edits, submission)}"
 
 
-def _changes(edits: Sequence[Edit], submission: Submission) -> str:
+def _changes(edits: Edits, submission: Submission) -> str:
     """Return the edits in words, and where a macro is called that one of them changes."""
     changes = _moves(edits, submission) or _indents(edits, submission)
     if not changes:
@@ -307,12 +312,12 @@ def _changes(edits: Sequence[Edit], submission: Submission) -> str:
         changes.append(counted(len(edits) - MAX_IN_HINT, "more edit"))
     text = enumerated(changes, MAX_IN_HINT + 1)
     source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
-    if source is not None and source.is_expanded:
+    if source and source.is_expanded:
         text += _calls(edits, cast("ExpandedSource", source), submission.path)
     return text
 
 
-def _texts_to_check(edits: Sequence[Edit], submission: Submission) -> str:
+def _texts_to_check(edits: Edits, submission: Submission) -> str:
     """Return the texts to look at, each with its line."""
     texts = [f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits if edit.old]
     if texts:
@@ -320,7 +325,7 @@ def _texts_to_check(edits: Sequence[Edit], submission: Submission) -> str:
     return _places(edits, submission)
 
 
-def _places(edits: Sequence[Edit], submission: Submission) -> str:
+def _places(edits: Edits, submission: Submission) -> str:
     """Return the lines to look at: lines 65 and 73; of another file with its name."""
     files: dict[str, list[int]] = {}
     for edit in edits:
@@ -338,12 +343,12 @@ def _lines(numbers: Sequence[int]) -> str:
     return f"{'lines' if len(texts) > 1 else 'line'} {enumerated(texts, _MAX_LINES)}"
 
 
-def _calls(edits: Sequence[Edit], source: "ExpandedSource", main: str | None) -> str:
+def _calls(edits: Edits, source: "ExpandedSource", main: str | None) -> str:
     """Return where the macros of xacro that edits are in are called, if that is more than once."""
     from grader.ros.xacro.rewriting import ExpandedEdits  # late: most robots are not xacro
 
     expanded = ExpandedEdits(source)
-    texts: dict[str, str] = {}
+    texts = {}
     for edit in edits:
         for macro, calls in expanded.calls(edit).items():
             if len(calls) > 1:
@@ -360,7 +365,7 @@ def _at(place: Location | Edit, main: str | None) -> str:
     return f"line {place.line} of {place.path}"
 
 
-def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
+def _moves(edits: Edits, submission: Submission) -> list[str]:
     """Return two changes in words if they belong together.
 
     They exchange texts, or a text is removed at one place and added at another.
@@ -380,13 +385,14 @@ def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
     return [f"move {_quote(removed.old)} ({_where(removed, submission)}) to {place}"]
 
 
-def _indents(edits: Sequence[Edit], submission: Submission) -> list[str]:
+def _indents(edits: Edits, submission: Submission) -> list[str]:
     """Return what becomes of the indentation of lines, if nothing else changes."""
     for edit in edits:
         is_text = bool((edit.old + edit.new).strip(" \t"))
         if is_text or edit.column > 1 or edit.old == edit.new:
             return []
-    path, indent = edits[0].path, edits[0].new
+    path = edits[0].path
+    indent = edits[0].new
     widths = []
     for character, word in (("\t", "tab"), (" ", "space")):
         if character in indent:
@@ -402,7 +408,8 @@ def _change(edit: Edit, submission: Submission) -> str:
         return f"rename `{edit.path}` to `{edit.renamed}`"
     if not edit.path.endswith(ROBOT_ENDINGS):
         edit = _whole_lines(edit, submission)
-    old, new = _quote(edit.old), _quote(edit.new)
+    old = _quote(edit.old)
+    new = _quote(edit.new)
     if not edit.old:
         return f"add {new} {_insertion(edit, submission)}"
     where = _where(edit, submission)
@@ -420,25 +427,28 @@ def _whole_lines(edit: Edit, submission: Submission) -> Edit:
     """Return an edit of a part of an expression as one of the lines that it changes."""
     if all(map(_is_whole, (edit.old, edit.new))):
         return edit
-    text = _text(submission, edit.path)
+    text = text_of(submission, edit.path)
     source = Source(edit.path, text)
     last_line = edit.line + edit.old.count("\n")
-    start, end = source.offset(edit.line, 1), source.offset(last_line + 1, 1)
+    start = source.offset(edit.line, 1)
+    end = source.offset(last_line + 1, 1)
     at = source.start_offset(edit)
     before = text[start:end].splitlines(keepends=True)
     text_after = f"{text[start:at]}{edit.new}{text[at + len(edit.old) : end]}"
     after = text_after.splitlines(keepends=True)
     first = _common_start(before, after)
-    before, after = before[first:], after[first:]
+    before = before[first:]
+    after = after[first:]
     last = _common_start(before[::-1], after[::-1])
     if last:
-        before, after = before[:-last], after[:-last]
+        before = before[:-last]
+        after = after[:-last]
     return Edit(edit.path, edit.line + first, 1, "".join(before), "".join(after))
 
 
 def _common_start(one: Sequence[str], other: Sequence[str]) -> int:
     """Return how many lines both begin with."""
-    return len([*takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False))])
+    return len(list(takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False))))
 
 
 def _is_whole(text: str) -> bool:
@@ -454,7 +464,8 @@ def _is_whole(text: str) -> bool:
 
 def _insertion(edit: Edit, submission: Submission) -> str:
     """Return the line before, after or in which a text is added, or at the end of which."""
-    line, at = _line(edit, submission), _at(edit, submission.path)
+    line = _line(edit, submission)
+    at = _at(edit, submission.path)
     is_line = edit.new.endswith("\n")
     if is_line and not edit.path.endswith(ROBOT_ENDINGS):
         before = edit._replace(line=edit.line - 1)
@@ -474,7 +485,8 @@ def _where(edit: Edit, submission: Submission) -> str:
 
     The latter is there if the text is there several times.
     """
-    line, place = _line(edit, submission), _at(edit, submission.path)
+    line = _line(edit, submission)
+    place = _at(edit, submission.path)
     number = line.count(edit.old) if edit.old else 0
     if number < 2:
         return place
@@ -483,14 +495,10 @@ def _where(edit: Edit, submission: Submission) -> str:
 
 
 def _line(edit: Edit, submission: Submission) -> str:
-    lines = _text(submission, edit.path).split("\n")
+    lines = text_of(submission, edit.path).split("\n")
     if 0 < edit.line <= len(lines):
         return lines[edit.line - 1].removeprefix("\ufeff")
     return ""
-
-
-def _text(submission: Submission, path: str) -> str:
-    return (content(submission, path) or b"").decode("utf-8", "surrogateescape")
 
 
 def _quote(text: str) -> str:

@@ -9,6 +9,7 @@ from itertools import chain, combinations
 from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.patterns import on_use
 from grader.base.problems import Fix
 from grader.base.source import Source
 from grader.lab.checks.parameters import find_value, measured
@@ -21,9 +22,9 @@ from grader.workspace.rules.rule_table import Family
 
 _MAX_WRONG = 4  # names of which all combinations are tried
 _MAX_REMAPPINGS = 8  # of a file
-_REMAPPINGS = re.compile(r"\bremappings\s*=\s*\[[^][]*\]")
-_PAIR = re.compile(r"""\(\s*+(["'][^"'\n]++["'])\s*+,\s*+(["'][^"'\n]++["'])\s*+(?:,\s*+)?\)""")
-_FROM_TO = re.compile(
+_REMAPPINGS = on_use(r"\bremappings\s*=\s*\[[^][]*\]")
+_PAIR = on_use(r"""\(\s*+(["'][^"'\n]++["'])\s*+,\s*+(["'][^"'\n]++["'])\s*+(?:,\s*+)?\)""")
+_FROM_TO = on_use(
     r"""\bfrom\s*+[=:]\s*+(["']?[\w~/]++["']?)\s*+(?:,\s*+)?\bto\s*+[=:]\s*+(["']?[\w~/]++["']?)(?![^\s},>/])"""
 )
 
@@ -41,7 +42,7 @@ def name_proposals(submission: Submission, family: Family, reference: Package | 
     spelling = _spelling(submission, name_fixes, family, reference)
     proposals = []
     for wrong in wrong_names(workspace, family, submission.lab_packages.values()):
-        proposals.append([*_ways(name_fixes.guesses(wrong), spelling)])
+        proposals.append(list(_ways(name_fixes.guesses(wrong), spelling)))
     yield from chain.from_iterable(proposals)
     if family == "topics":
         yield from chain.from_iterable(map(_exchanged_remappings, name_fixes.sources))
@@ -61,7 +62,7 @@ def _spelling(
     for known in submission.workspace.robots.known:
         texts += [link.name for link in known.robot.links]
         texts += [joint.name for joint in known.robot.joints]
-    packages = reference.packages.values() if reference is not None else ()
+    packages = reference.packages.values() if reference else ()
     texts_of_reference = [source.text for source in name_fixes.read_sources(packages)]
     # A part of a path is a name of its own, a part of a topic is none.
     if family in ("files", "programs"):
@@ -126,16 +127,19 @@ def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Propos
 
     There is one only where a value is written plainly.
     """
-    name, meant = wanted["parameter"], wanted.get("value")
+    name = wanted["parameter"]
+    meant = wanted.get("value")
     try:
         given = find_value(submission, wanted["node"], name)
         if "measure" in wanted:
             meant = round(measured(submission, wanted["measure"], wanted.get("links", [])), 6)
     except (MissingElement, NotDecided):
         return
-    value, at = given.value, given.location
-    source, key = submission.source(at.path), re.escape(name.rpartition(".")[2])
-    if source is None:
+    value = given.value
+    at = given.location
+    source = submission.source(at.path)
+    key = re.escape(name.rpartition(".")[2])
+    if not source:
         return
     if not isinstance(meant, str | int | float):
         return

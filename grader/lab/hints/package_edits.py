@@ -5,20 +5,22 @@ name no file, names that are undefined, and words that are misspelt.
 """
 
 import ast
-import posixpath
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from itertools import islice, product
 from keyword import kwlist
+from posixpath import dirname, normpath, splitext
 from typing import Any
 
 from grader.base.element_edits import edited
+from grader.base.grouping import Span, Strings, as_list
 from grader.base.markup import indentation, indented
 from grader.base.merge_conflicts import find_conflicts
 from grader.base.names import closest
-from grader.base.source import Edit, Edits, Source
-from grader.base.text import in_backticks
+from grader.base.patterns import on_use
+from grader.base.source import Edit, Source
+from grader.base.text import in_backticks, indent_of
 from grader.lab.hints.edits import Proposal, Proposals
 from grader.lab.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.ros.installation.places import HOME, PREFIX, WORKING_FOLDER
@@ -27,30 +29,33 @@ from grader.ros.package.package import SETUP, Package
 from grader.ros.python.library import USUAL_NAMES
 from grader.ros.python.python_file import PythonFile, argument
 
-_WORD = re.compile(r"[^\W\d]\w*")
-_MAX_WORDS, _MAX_SUSPECTS = 8, 60
+_WORD = on_use(r"[^\W\d]\w*")
+_MAX_WORDS = 8
+_MAX_SUSPECTS = 60
 _MAX_MEANT = 4  # names that an undefined one may stand for
 _MAX_MORE = 2  # letters that one word has more than the other
 _LIKENESS = 0.75
-_TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
+_TOKEN = on_use(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
 _AROUND_TEXTS = " ,'\"\r\n"
-_MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
-_SETTING = re.compile(r"(?P<key>[^\W\d][\w -]{0,60}?)(?::[ ]+|=\")(?P<value>[^\s\"][^\n\"]*)")
+_MAX_DIFFERENCES = 6
+_MAX_TOKENS = 3000
+_SETTING = on_use(r"(?P<key>[^\W\d][\w -]{0,60}?)(?::[ ]+|=\")(?P<value>[^\s\"][^\n\"]*)")
 _MAX_VALUES = 4
 _MAX_BEFORE = 1_000  # characters in which the key around a value is searched
 _SUBSTITUTIONS = ("find-pkg-share", "var", "env", "command", "dirname")
-_SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]+")
-_SINGLE, _TYPOGRAPHIC = "‘’‚", re.compile("[‘’‚“”„]")
-_PROGRAM = re.compile(r"(?:(?<=['\"]xacro)|(?<=['\"]cat))(?=['\"$])")
-_PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
+_SUBSTITUTION = on_use(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]+")
+_SINGLE = "‘’‚"
+_TYPOGRAPHIC = re.compile("[‘’‚“”„]")
+_PROGRAM = on_use(r"(?:(?<=['\"]xacro)|(?<=['\"]cat))(?=['\"$])")
+_PIECE = on_use(r"[^\s\"'<>=(){},\[\]$;|]+")
 # What is before the name of a package: get_package_share_directory(', FindPackageShare(",
 # $(find-pkg-share and a space.
-_PACKAGE_ARGUMENT = re.compile(
+_PACKAGE_ARGUMENT = on_use(
     r"(?:package_share_\w{1,30}|package_prefix|FindPackage\w{0,30}|find-pkg-\w{1,30})[\s(]{0,30}['\"]?$"
 )
 _MAX_PIECES = 1000  # of one file
 _MAX_CALL = 80  # characters before an argument that are looked at
-_REST_OF_ARGUMENT = re.compile(r"\s*+,\s*+")
+_REST_OF_ARGUMENT = on_use(r"\s*+,\s*+")
 _ENDINGS = {
     "urdf": (".urdf", ".xacro"),
     "rviz": (".rviz",),
@@ -62,10 +67,9 @@ _SHARE_FUNCTION = "get_package_share_directory"
 _MAX_PATHS = 8  # that are wrong in one file
 _MAX_EDITS = 3  # of one path
 _MAX_FILES = 200
-_ADDRESS = re.compile(
+_ADDRESS = on_use(
     r"\bemail\s*=\s*[\"'](?P<all>(?P<name>[\w.+-]+)(?:\s+at\s+|\s*[(\[]at[)\]]\s*)(?P<host>[\w.-]+))[\"']"
 )
-_LAUNCH = "the launch file"
 _DESCRIPTION = "LaunchDescription"
 _MAX_AROUND = 30  # lines that are indented together
 _MAX_ITEMS = 30
@@ -75,7 +79,7 @@ _MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
 def package_proposals(
     package: Package,
     reference: Package | None,
-    wanted: Iterable[tuple[tuple[str, ...], Mapping[str, Any]]],
+    wanted: Iterable[tuple[Strings, Mapping[str, Any]]],
 ) -> Iterator[Proposals]:
     """Yield edits of a package for checks, by the kinds of files.
 
@@ -86,7 +90,7 @@ def package_proposals(
     for looks_at, arguments in wanted:
         kinds |= dict.fromkeys(looks_at)
         for value in arguments.values():
-            texts = value if isinstance(value, list) else [value]
+            texts = as_list(value)
             given.update(text for text in texts if isinstance(text, str))
     task = PackageTask(package, reference, frozenset(given))
     for kind in ("", *kinds):
@@ -98,7 +102,7 @@ def _best_of_kind(task: PackageTask, kind: str) -> Proposals:
 
     A later one says better what changes.
     """
-    proposals: dict[Edits, Proposal] = {}
+    proposals = {}
     for proposal in islice(_proposals_of_kind(task, kind), _MAX_MADE):
         if proposal.edits:
             proposals[proposal.edits] = proposal
@@ -117,12 +121,13 @@ def _proposals_of_kind(task: PackageTask, kind: str) -> Proposals:
     yield from file_proposals(task, kind)
     if kind in (SETUP, "launch"):
         yield from file_proposals(task, "urdf")
-    path, like = task.file(task.package, kind), task.file(task.reference, kind)
+    path = task.file(task.package, kind)
+    like = task.file(task.reference, kind)
     source = task.source(path)
-    if source is not None and path is not None:
+    if source and path is not None:
         for proposal in _proposals_of_file(task, kind, source, path, like):
             if proposal.edits and not any(map(_writes_address, proposal.edits)):
-                yield proposal
+                yield proposal._replace(cause=f"{proposal.cause} in {WHAT.get(kind, kind)}")
 
 
 def _writes_address(edit: Edit) -> bool:
@@ -139,25 +144,26 @@ def _proposals_of_file(
     They are about its difference to the reference, its syntax, its names, its paths and its
     words.
     """
-    what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
+    wanted = task.wanted(like) or ""
     removed = [span for conflict in find_conflicts(source.text) for span in conflict.removed]
     if removed:  # whose marker lines no other edit removes together
         edits = [source.edit(*span, "") for span in removed]
-        yield change(edits, "an unresolved merge conflict", what)
+        yield change(edits, "an unresolved merge conflict")
         return
     file = PythonFile(source)
-    ending, ending_of_like = posixpath.splitext(path)[1], posixpath.splitext(like or "")[1]
+    ending = splitext(path)[1]
+    ending_of_like = splitext(like or "")[1]
     is_python = ending in (".py", "")
     if wanted and (ending == ending_of_like or is_python):
-        yield from _reword(source, file, wanted, what)
+        yield from _reword(source, file, wanted)
     if is_python:
-        yield from _missing_entries(file, PythonFile(Source(source.path, wanted)), what)
-        yield from _undefined_names(file, what)
+        yield from _missing_entries(file, PythonFile(Source(source.path, wanted)))
+        yield from _undefined_names(file)
     elif ending == ending_of_like:
-        yield from _other_values(source, wanted, what)
+        yield from _other_values(source, wanted)
     for address in _ADDRESS.finditer(source.text):
         edit = source.edit(*address.span("all"), f"{address['name']}@{address['host']}")
-        yield change([edit], "an e-mail address without @", what)
+        yield change([edit], "an e-mail address without @")
     if kind == "launch":
         launch = task.launch(path, source)
         yield from _launch_paths(task, launch, source)
@@ -165,25 +171,23 @@ def _proposals_of_file(
     elif kind == SETUP:
         yield from _setup_paths(task)
     paths = task.files if kind == SETUP else task.package.installed
-    yield from _respellings(source, [wanted, *paths], what)
+    yield from _respellings(source, [wanted, *paths])
     if is_python:  # these rarely find a mistake
-        yield from _unquoted_names(file, what)
-        yield from _missing_calls(file, what)
-        yield from _missing_brackets(file, what)
-        yield from _missing_slashes(file, what)
-        yield from _indentations(file, what)
+        yield from _unquoted_names(file)
+        yield from _missing_calls(file)
+        yield from _missing_brackets(file)
+        yield from _missing_slashes(file)
+        yield from _indentations(file)
 
 
-def _respellings(source: Source, known: Iterable[str], what: str) -> Proposals:
+def _respellings(source: Source, known: Iterable[str]) -> Proposals:
     """Yield edits that replace a misspelt word everywhere, rare ones first.
 
     `known` are texts with words that are spelt as they should be; the file's other words may be the
     right ones, too.
     """
-    places: dict[str, list[re.Match[str]]] = {}
-    for match in _WORD.finditer(source.text):
-        places.setdefault(match[0], []).append(match)
-    right: set[str] = set()
+    places = _group_matches(_WORD, source)
+    right = set()
     for text in (*known, *kwlist, *USUAL_NAMES):
         right.update(_WORD.findall(text))
     bound = PythonFile(source).bound if source.path.endswith(".py") else frozenset()
@@ -195,31 +199,37 @@ def _respellings(source: Source, known: Iterable[str], what: str) -> Proposals:
         if not guess or {word, guess} <= bound:  # names that are both bound are two things
             continue
         edits = [source.edit(*place.span(), guess) for place in places[word]]
-        yield change(edits, f"the spelling of `{word}`", what)
+        yield change(edits, f"the spelling of `{word}`")
         count += 1
         if count == _MAX_WORDS:
             break
-    yield from _replace_words(source, _PROGRAM, [" "], what)
+    yield from _replace_words(source, _PROGRAM, [" "])
     quotes = [
         source.edit(*match.span(), "'" if match[0] in _SINGLE else '"')
         for match in _TYPOGRAPHIC.finditer(source.text)
     ]
-    yield change(quotes, "quotation marks that are not straight", what)
+    yield change(quotes, "quotation marks that are not straight")
     if not source.path.endswith(".py"):
-        yield from _replace_words(source, _SUBSTITUTION, _SUBSTITUTIONS, what)
+        yield from _replace_words(source, _SUBSTITUTION, _SUBSTITUTIONS)
 
 
-def _replace_words(
-    source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str
-) -> Proposals:
-    """Yield edits that write another word everywhere for what a pattern finds."""
+def _group_matches(
+    pattern: re.Pattern[str], source: Source
+) -> Mapping[str, Sequence[re.Match[str]]]:
+    """Return where a pattern finds each text."""
     places: dict[str, list[re.Match[str]]] = {}
     for match in pattern.finditer(source.text):
         places.setdefault(match[0], []).append(match)
+    return places
+
+
+def _replace_words(source: Source, pattern: re.Pattern[str], words: Iterable[str]) -> Proposals:
+    """Yield edits that write another word everywhere for what a pattern finds."""
+    places = _group_matches(pattern, source)
     for matches, word in product(places.values(), words):
         edits = [source.edit(*match.span(), word) for match in matches]
         written = in_backticks([matches[0][0]]) or "a missing space"
-        yield change(edits, written, what)
+        yield change(edits, written)
 
 
 def _slip(word: str, known: Iterable[str]) -> str | None:
@@ -233,7 +243,7 @@ def _slip(word: str, known: Iterable[str]) -> str | None:
     return guess if likeness >= _LIKENESS else None
 
 
-def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Proposals:
+def _reword(source: Source, file: PythonFile, wanted: str) -> Proposals:
     """Yield edits that undo one difference each between a file and its proper text.
 
     There are none unless they are few.
@@ -249,10 +259,11 @@ def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Proposa
         return
     for _, first, last, start, end in changes:
         offset = start_of_text + len("".join(own_tokens[:first]))
-        old, new = "".join(own_tokens[first:last]), "".join(right[start:end])
+        old = "".join(own_tokens[first:last])
+        new = "".join(right[start:end])
         edit = source.edit(offset, offset + len(old), new)
         written = in_backticks([_without_quotes(old)])
-        yield change([edit], written or _missing_in_words(file, offset, new), what)
+        yield change([edit], written or _missing_in_words(file, offset, new))
 
 
 def _without_quotes(text: str) -> str:
@@ -282,7 +293,7 @@ def _missing_in_words(file: PythonFile, offset: int, new: str) -> str:
     return f"a missing part of `{around}`" if around else "a missing line"
 
 
-def _other_values(source: Source, wanted: str, what: str) -> Proposals:
+def _other_values(source: Source, wanted: str) -> Proposals:
     """Yield edits that give a key or an attribute a value of the reference.
 
     This is a key of YAML, or an attribute of XML.
@@ -294,11 +305,11 @@ def _other_values(source: Source, wanted: str, what: str) -> Proposals:
         values = dict.fromkeys(known.get(setting["key"], ()))
         if setting["value"] in values:
             continue
-        for value in [*values][:_MAX_VALUES]:
+        for value in list(values)[:_MAX_VALUES]:
             edit = source.edit(*setting.span("value"), value)
             around = _key_around(source, setting.start()) if setting["key"] == "Value" else ""
             inside = f" of `{around}`" if around else ""
-            yield change([edit], f"the value of `{setting['key']}`{inside}", what)
+            yield change([edit], f"the value of `{setting['key']}`{inside}")
 
 
 def _key_around(source: Source, offset: int) -> str:
@@ -307,29 +318,29 @@ def _key_around(source: Source, offset: int) -> str:
     indent = len(lines[-1])
     for line in reversed(lines[:-1]):
         key = line.strip()
-        if key.endswith(":") and len(line) - len(line.lstrip()) < indent:
+        if key.endswith(":") and len(indent_of(line)) < indent:
             return key.removesuffix(":")
     return ""
 
 
-def _undefined_names(file: PythonFile, what: str) -> Proposals:
+def _undefined_names(file: PythonFile) -> Proposals:
     """Yield edits that import or correct names, and missing commas.
 
     The names are undefined, or not as they are used.
     """
     undefined = sorted(file.undefined)
     imported = in_backticks(name for name in undefined if name in USUAL_NAMES)
-    yield change(file.with_imports(sorted(file.used)), f"the import of {imported}", what)
-    yield from _meant_names(file, what)
-    yield from _other_imports(file, what)
+    yield change(file.with_imports(sorted(file.used)), f"the import of {imported}")
+    yield from _meant_names(file)
+    yield from _other_imports(file)
     for node in file.nodes:
         # ("a", "b")("c", "d") is two tuples without a comma between them
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple):
             end = file.span(node.func)[1]
-            yield change([file.source.edit(end, end, ",")], "a missing comma", what)
+            yield change([file.source.edit(end, end, ",")], "a missing comma")
 
 
-def _meant_names(file: PythonFile, what: str) -> Proposals:
+def _meant_names(file: PythonFile) -> Proposals:
     """Yield edits that write the most similar names that have values for undefined ones."""
     names = [node for node in file.nodes if isinstance(node, ast.Name)]
     undefined = file.undefined - {*USUAL_NAMES}
@@ -341,32 +352,32 @@ def _meant_names(file: PythonFile, what: str) -> Proposals:
 
         for other in sorted(file.values, key=likeness, reverse=True)[:_MAX_MEANT]:
             edits = [file.replaced(node, other) for node in uses]
-            yield change(edits, f"the spelling of `{word}`", what)
+            yield change(edits, f"the spelling of `{word}`")
 
 
-def _other_imports(file: PythonFile, what: str) -> Proposals:
+def _other_imports(file: PythonFile) -> Proposals:
     """Yield edits that import the function glob instead of the module, or the reverse."""
     for statement in file.imports:
         if [alias.name for alias in statement.names] == ["glob"]:
             new = "from glob import glob" if isinstance(statement, ast.Import) else "import glob"
             cause = in_backticks([file.segment(statement)])
-            proposal = change([file.replaced(statement, new)], cause, what)
+            proposal = change([file.replaced(statement, new)], cause)
             # It says better what changes than the difference of the lines.
             yield proposal._replace(rank=-1)
 
 
-def _unquoted_names(file: PythonFile, what: str) -> Proposals:
+def _unquoted_names(file: PythonFile) -> Proposals:
     """Yield edits that write a name without the quotes around it."""
     constants = [node for node in file.nodes if isinstance(node, ast.Constant)]
     names = [node for node in constants if node.value in file.values]
     for node in names[:_MAX_WORDS]:
         cause = f"`{node.value!s}` in quotes, which is a text"
-        yield change([file.replaced(node, str(node.value))], cause, what)
+        yield change([file.replaced(node, str(node.value))], cause)
 
 
-def _missing_calls(file: PythonFile, what: str) -> Proposals:
+def _missing_calls(file: PythonFile) -> Proposals:
     """Yield edits that call a method which is only named, such as infp.read."""
-    inside: set[ast.expr] = set()  # of a call or of another attribute
+    inside = set()  # of a call or of another attribute
     for node in file.nodes:
         if isinstance(node, ast.Call):
             inside.add(node.func)
@@ -376,30 +387,31 @@ def _missing_calls(file: PythonFile, what: str) -> Proposals:
     outside = [node for node in attributes if node not in inside and isinstance(node.ctx, ast.Load)]
     for method in outside[:_MAX_WORDS]:
         edit = file.replaced(method, f"{file.segment(method)}()")
-        yield change([edit], f"`{method.attr}` without ()", what)
+        yield change([edit], f"`{method.attr}` without ()")
 
 
-def _missing_brackets(file: PythonFile, what: str) -> Proposals:
+def _missing_brackets(file: PythonFile) -> Proposals:
     """Yield edits that put brackets around actions, or around the file of an entry."""
     groups = [call.args for call in file.calls(_DESCRIPTION) if len(call.args) > 1]
     for item in _items(file):
         if isinstance(item, ast.Tuple) and len(item.elts) > 1:
             groups.append(item.elts[1:])
     for group in groups[:_MAX_WORDS]:
-        start, end = file.span(group[0])[0], file.span(group[-1])[1]
+        start = file.span(group[0])[0]
+        end = file.span(group[-1])[1]
         edits = [file.source.edit(start, start, "["), file.source.edit(end, end, "]")]
         if len(group) == 1:
             edits = [file.source.edit(start, end, f"[{file.text[start:end]}]")]
-        yield change(edits, "missing brackets", what)
+        yield change(edits, "missing brackets")
 
 
-def _missing_slashes(file: PythonFile, what: str) -> Proposals:
+def _missing_slashes(file: PythonFile) -> Proposals:
     """Yield edits that separate a folder from the name that it is added to."""
     for node in file.nodes:
         match node:
             case ast.BinOp(op=ast.Add(), right=ast.Constant(value=str(folder)) as right):
                 edit = file.replaced(right, repr(f"/{folder}"))
-                yield change([edit], f"`{folder}` without /", what)
+                yield change([edit], f"`{folder}` without /")
 
 
 def _find_blank_line(lines: Sequence[str], first: int) -> int:
@@ -410,13 +422,13 @@ def _find_blank_line(lines: Sequence[str], first: int) -> int:
     return at
 
 
-def _indentations(file: PythonFile, what: str) -> Proposals:
+def _indentations(file: PythonFile) -> Proposals:
     """Yield edits that indent lines as those around them, with which Python can read the file.
 
     These are the line at which Python stops and the one before it, each alone, and with those that
     follow it without a blank line.
     """
-    if file.fault is None:
+    if not file.fault:
         return
     lines = file.text.split("\n")
     stop = file.fault.location.line - 1
@@ -429,8 +441,8 @@ def _indentations(file: PythonFile, what: str) -> Proposals:
             rows = range(first, min(end, first + _MAX_AROUND))
             edits = [_indented_line(file, row + 1, indent) for row in rows]
             text = edited(file.text, file.source.path, edits)
-            if text is not None and PythonFile(Source("", text)).fault is None:
-                yield change(edits, "the indentation", what)
+            if text is not None and not PythonFile(Source("", text)).fault:
+                yield change(edits, "the indentation")
 
 
 def _indents_around(lines: Sequence[str], row: int) -> list[str]:
@@ -438,7 +450,7 @@ def _indents_around(lines: Sequence[str], row: int) -> list[str]:
     around = [*lines[max(row - _MAX_AROUND, 0) : row], *lines[row + 1 : row + 2]]
     known = dict.fromkeys(_read_indent(line) for line in reversed(around) if line.strip())
     deeper = f"{next(iter(known), '')}    "
-    return [*dict.fromkeys((*known, deeper))]
+    return list(dict.fromkeys((*known, deeper)))
 
 
 def _indented_line(file: PythonFile, number: int, indent: str) -> Edit:
@@ -447,7 +459,7 @@ def _indented_line(file: PythonFile, number: int, indent: str) -> Edit:
 
 
 def _read_indent(line: str) -> str:
-    return line[: len(line) - len(line.lstrip())]
+    return indent_of(line)
 
 
 def _programs(task: PackageTask, launch: Launch, source: Source) -> Proposals:
@@ -475,32 +487,34 @@ def _programs(task: PackageTask, launch: Launch, source: Source) -> Proposals:
             edits.sort(key=lambda edit: abs(edit.line - node.location.line))
             for edit in edits[:_MAX_EDITS]:
                 rank = -1 if edit.old == node.executable else 0
-                cause = f"the program `{edit.old}` of a node"
-                yield change([edit], cause, _LAUNCH)._replace(rank=rank)
+                yield change([edit], f"the program `{edit.old}` of a node")._replace(rank=rank)
 
 
 def _setup_paths(task: PackageTask) -> Proposals:
     """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
-    source, setup = task.source(SETUP), task.package.installation
-    if source is None or setup is None or setup.is_cmake:
+    source = task.source(SETUP)
+    setup = task.package.installation
+    if not source or not setup or setup.is_cmake:
         return
     wrong = [(named.path.rstrip("/"), named.at.line) for named in setup.stops]
     wrong += [(named.pattern, named.at.line) for named in setup.empty]
-    files = [*islice(task.files, _MAX_FILES)]
+    files = list(islice(task.files, _MAX_FILES))
     patterns = []
     for path in files:
-        folder, ending = posixpath.dirname(path), posixpath.splitext(path)[1]
+        folder = dirname(path)
+        ending = splitext(path)[1]
         patterns += [f"{folder}/*", f"{folder}/*{ending}"]
     for path, line in wrong[:_MAX_PATHS]:
-        known, texts = [*files, *patterns], [path]
+        known = files + patterns
+        texts = [path]
         if path in task.package.tree.folders:
-            above = posixpath.dirname(path)
-            known = [pattern for pattern in patterns if posixpath.dirname(pattern) in (above, path)]
+            above = dirname(path)
+            known = [pattern for pattern in patterns if dirname(pattern) in (above, path)]
             texts.append(f"{above}/*")
         for actual in texts:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
                 for edit in _moved(source, actual, wanted, line)[:2]:
-                    yield change([edit], f"the path `{edit.old}`", SETUP)
+                    yield change([edit], f"the path `{edit.old}`")
 
 
 def _similar(path: str, known: Iterable[str]) -> list[str]:
@@ -520,7 +534,7 @@ def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Proposal
     for reference in launch.references[:_MAX_PATHS]:
         if reference.path is None:
             continue
-        path = posixpath.normpath(reference.path).removeprefix(f"{PREFIX}/")
+        path = normpath(reference.path).removeprefix(f"{PREFIX}/")
         if path not in task.package.installed:
             edits_of_path = _edits_of_path(task, source, reference)[:_MAX_EDITS]
             if edits_of_path:
@@ -534,7 +548,7 @@ def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Proposal
 def _paths_changed(edits: Sequence[Edit]) -> Proposal:
     """Return the proposal that changes paths in the launch file."""
     paths = [edit.old.strip(_AROUND_TEXTS) for edit in edits if edit.old]
-    return change(edits, f"the path{'s' if len(paths) > 1 else ''} {in_backticks(paths)}", _LAUNCH)
+    return change(edits, f"the path{'s' if len(paths) > 1 else ''} {in_backticks(paths)}")
 
 
 def _targets(task: PackageTask, purpose: str) -> list[str]:
@@ -552,12 +566,13 @@ def _targets(task: PackageTask, purpose: str) -> list[str]:
 
 def _edits_of_path(task: PackageTask, source: Source, named: NamedFile) -> list[list[Edit]]:
     """Return the edits with which a path becomes the one that the file is installed at."""
-    actual, share = named.path or "", f"{PREFIX}/share/{task.package.name}/"
+    actual = named.path or ""
+    share = f"{PREFIX}/share/{task.package.name}/"
     for below in _similar(actual.removeprefix(share), _targets(task, named.purpose))[:1]:
         if actual.startswith(PREFIX):
             return [[edit] for edit in _moved(source, actual, share + below, named.location.line)]
         if source.path.endswith(".py"):
-            return [*_share_edits(task.package.name, PythonFile(source), actual, below)]
+            return list(_share_edits(task.package.name, PythonFile(source), actual, below))
     return []
 
 
@@ -593,7 +608,7 @@ def _share_edits(name: str, file: PythonFile, actual: str, target: str) -> Itera
             yield edits
 
 
-def _path_offsets(source: Source) -> Iterator[tuple[int, int]]:
+def _path_offsets(source: Source) -> Iterator[Span]:
     """Yield the offsets of the texts in a file that a path may be put together from."""
     if not source.path.endswith(".py"):
         yield from (match.span() for match in _PIECE.finditer(source.text))
@@ -623,7 +638,8 @@ def _moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit
 
 def _replacements(piece: str, actual: str, wanted: str) -> Iterator[str]:
     for place in re.finditer(re.escape(piece), actual):
-        head, tail = actual[: place.start()], actual[place.end() :]
+        head = actual[: place.start()]
+        tail = actual[place.end() :]
         if len(head) + len(tail) > len(wanted):
             continue
         if wanted.startswith(head) and wanted.endswith(tail):
@@ -641,14 +657,14 @@ def _without(source: Source, start: int, end: int) -> Edit:
     quote = text[start - 1 : start]
     is_quoted = quote in "'\"" and text[end : end + 1] == quote
     rest_of_argument = _REST_OF_ARGUMENT.match(text, end + 1)
-    if is_quoted and rest_of_argument is not None:
+    if is_quoted and rest_of_argument:
         return source.edit(start - 1, rest_of_argument.end(), "")
     if text.startswith("/", end):
         return source.edit(start, end + 1, "")
     return source.edit(start, end, "")
 
 
-def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Proposals:
+def _missing_entries(file: PythonFile, like: PythonFile) -> Proposals:
     """Yield edits that add missing entries: one, or all.
 
     These are what the file makes and does not use, or entries of the reference's list.
@@ -656,7 +672,7 @@ def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Proposals
     A node of a package of which the file has one is not added: that one is wrong.
     """
     unused = [name for name in file.made if name not in file.used]
-    known: set[str] = set()
+    known = set()
     for item in _items(file):
         known |= _codes_of_entry(file, item)
     for call in file.calls("Node"):
@@ -668,22 +684,22 @@ def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Proposals
     ]
     for codes_to_add in (unused, missing):
         for code in codes_to_add:
-            yield from _adding(file, [code], what)
+            yield from _adding(file, [code])
         if len(codes_to_add) > 1:
-            yield from _adding(file, codes_to_add, what)
+            yield from _adding(file, codes_to_add)
 
 
-def _adding(file: PythonFile, codes: Sequence[str], what: str) -> Proposals:
+def _adding(file: PythonFile, codes: Sequence[str]) -> Proposals:
     edit = _add(file, codes)
-    if edit is not None:
-        names: set[str] = set()
+    if edit:
+        names = set()
         for code in codes:
             names |= file.names_in(code)
-        cause = f"a missing part of `{'data_files' if what == SETUP else _DESCRIPTION}`"
+        cause = f"a missing part of `{'data_files' if file.calls('setup') else _DESCRIPTION}`"
         if imports := file.with_imports(sorted(names)):
             missing = in_backticks(sorted(names & USUAL_NAMES.keys() - file.bound))
             cause = f"{cause}, and the import of {missing}"
-        yield change([edit, *imports], cause, what)
+        yield change([edit, *imports], cause)
 
 
 def _codes_of_entry(file: PythonFile, item: ast.expr) -> set[str]:
@@ -697,7 +713,7 @@ def _codes_of_entry(file: PythonFile, item: ast.expr) -> set[str]:
 def _find_package(file: PythonFile, code: ast.expr) -> set[str]:
     """Return the package of the program that a node starts, if it names one."""
     given = argument(code, "package") if isinstance(code, ast.Call) else None
-    if given is not None:
+    if given:
         return {file.plain(given.value)}
     return set()
 
@@ -706,7 +722,7 @@ def _list(file: PythonFile) -> ast.expr | None:
     """Return the list of files to install, or of actions to start."""
     for call in file.calls("setup"):
         entries = argument(call, "data_files")
-        if entries is not None:
+        if entries:
             return file.meant(entries.value)
         return None
     return next((file.meant(call.args[0]) for call in file.calls(_DESCRIPTION) if call.args), None)
@@ -715,7 +731,7 @@ def _list(file: PythonFile) -> ast.expr | None:
 def _items(file: PythonFile) -> list[ast.expr]:
     """Return the entries of the list, and those that are added to it."""
     entries = _list(file)
-    items = [*entries.elts] if isinstance(entries, ast.List) else []
+    items = list(entries.elts) if isinstance(entries, ast.List) else []
     items += [call.args[0] for call in file.calls("add_action") if call.args]
     return [file.meant(item) for item in items[:_MAX_ITEMS]]
 
@@ -725,7 +741,8 @@ def _add(file: PythonFile, codes: Sequence[str]) -> Edit | None:
 
     The code is in lines of its own if that entry has one.
     """
-    entries, actions = _list(file), file.calls("add_action")
+    entries = _list(file)
+    actions = file.calls("add_action")
     if isinstance(entries, ast.List) and not (actions and not entries.elts):
         if not entries.elts:
             _, end = file.span(entries)
@@ -735,7 +752,8 @@ def _add(file: PythonFile, codes: Sequence[str]) -> Edit | None:
     elif actions:
         start, end = file.span(actions[-1])
         owner = file.segment(actions[-1].func)
-        codes, before = [f"{owner}({code})" for code in codes], ""
+        codes = [f"{owner}({code})" for code in codes]
+        before = ""
     else:
         return None
     indent = indentation(file.text, start)

@@ -1,9 +1,9 @@
 """A package whose edits are searched, beside the package of the rubric's reference solution."""
 
-import posixpath
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from posixpath import basename, dirname, join, split
 
 from grader.base.names import closest
 from grader.base.source import Edit, Source
@@ -45,10 +45,10 @@ class PackageTask:
 
         This is the one that a check names, else another one.
         """
-        if package is None or kind not in ("launch", "rviz"):
+        if not package or kind not in ("launch", "rviz"):
             return kind
         name = min((name for name in self.given if _classify_file(name) == kind), default="")
-        launch = next((package.launch(path) for path in package.launch_files[:1]), None)
+        launch = next(map(package.launch, package.launch_files[:1]), None)
         if kind == "launch":
             return package.launch_file(name)
         return package.rviz_file(name, launch)
@@ -59,15 +59,12 @@ class PackageTask:
 
     def wanted(self, path: str | None) -> str | None:
         """Return the text of a file of the reference, with the student's name of the package."""
-        if self.reference is not None and path is not None:
-            text = _text(self.reference, path)
-        else:
-            text = None
+        text = _text(self.reference, path) if self.reference and path is not None else None
         return self.named(text) if text is not None else None
 
     def named(self, text: str) -> str:
         """Return a text or a path of the reference with the student's name of the package."""
-        if self.reference is None or self.reference.name == self.package.name:
+        if not self.reference or self.reference.name == self.package.name:
             return text
         return re.sub(
             rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])",
@@ -104,38 +101,31 @@ def _text(package: Package, path: str) -> str | None:
     return data.decode("utf-8", "surrogateescape") if data is not None else None
 
 
-def change(edits: Iterable[Edit], cause: str, what: str = "") -> Proposal:
-    """Return a proposal.
-
-    `what` is the file in which something is wrong, if the cause does not name it.
-    """
-    return Proposal(tuple(dict.fromkeys(edits)), f"{cause} in {what}" if what else cause)
+def change(edits: Iterable[Edit], cause: str) -> Proposal:
+    """Return a proposal, with each edit once."""
+    return Proposal(tuple(dict.fromkeys(edits)), cause)
 
 
 def file_proposals(task: PackageTask, kind: str) -> Proposals:
     """Yield edits that give a file the name that it has in the reference."""
-    if task.reference is not None:
-        wanted = [task.named(path) for path in task.reference.tree.files]
-    else:
-        wanted = []
-    names = {posixpath.basename(path) for path in wanted} | task.given
+    wanted = [task.named(path) for path in task.reference.tree.files] if task.reference else []
+    names = {basename(path) for path in wanted} | task.given
     for path in dict.fromkeys(wanted):
-        folder, name = posixpath.split(path)
+        folder, name = split(path)
         if _classify_file(path) != kind or any(_is_named(file, name, kind) for file in task.files):
             continue
         same_kind = [
             file
             for file in task.files
-            if kind in (_classify_file(file), posixpath.dirname(file))
-            or file.startswith(f"{folder}/")
+            if kind in (_classify_file(file), dirname(file)) or file.startswith(f"{folder}/")
         ]
         yield from _rename(
-            task, kind, name, [file for file in same_kind if posixpath.basename(file) not in names]
+            task, kind, name, [file for file in same_kind if basename(file) not in names]
         )
 
 
 def _is_named(path: str, name: str, kind: str) -> bool:
-    return posixpath.basename(path) == name or (kind == "launch" and is_launch_named(path, name))
+    return basename(path) == name or (kind == "launch" and is_launch_named(path, name))
 
 
 def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Proposals:
@@ -144,16 +134,14 @@ def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Pr
     Xacro stays xacro.
     """
     spare = {
-        posixpath.basename(file): file
-        for file in files
-        if file.endswith(".xacro") <= name.endswith(".xacro")
+        basename(file): file for file in files if file.endswith(".xacro") <= name.endswith(".xacro")
     }
-    others = [*spare][:_MAX_NAMES]
+    others = list(spare)[:_MAX_NAMES]
     nearest = closest(name, spare)
     if nearest is not None:
         others.insert(0, nearest)
     for other in dict.fromkeys(others):
-        new = posixpath.join(posixpath.dirname(spare[other]), name)
+        new = join(dirname(spare[other]), name)
         yield change([task.renamed(spare[other], new)], f"the name of {WHAT.get(kind, 'a file')}")
 
 
@@ -166,10 +154,10 @@ def package_names(task: PackageTask, new: str) -> Proposals:
     if not names:
         return
     word = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, names))})(?![\w.])")
-    edits: list[Edit] = []
+    edits = []
     for path in (MANIFEST, SETUP, "setup.cfg", *task.package.launch_files[:_MAX_LAUNCH_FILES]):
         source = task.source(path)
-        if source is not None:
+        if source:
             edits += [source.edit(*match.span(), new) for match in word.finditer(source.text)]
     if f"resource/{new}" not in task.files:
         moved = [name for name in names if f"resource/{name}" in task.files]
@@ -183,10 +171,11 @@ def _other_names(task: PackageTask, new: str) -> list[str]:
     They are those of its manifest and setup.py, and names like the new one in paths of its share
     folder. There are none if the manifest has no name.
     """
-    manifest, setup = task.package.manifest, task.package.installation
-    if manifest is None or manifest.name is None:
+    manifest = task.package.manifest
+    setup = task.package.installation
+    if not manifest or manifest.name is None:
         return []
     shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]
-    own_names = [manifest.name, setup.name if setup is not None else None]
+    own_names = [manifest.name, setup.name if setup else None]
     similar = [name for name in shares if closest(name, [new])]
     return [name for name in dict.fromkeys([*own_names, *similar]) if name and name != new]

@@ -6,10 +6,11 @@ Each is an edit that may undo a mistake.
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import NamedTuple
 
 from grader.base.element_edits import escaped
+from grader.base.grouping import StringsByName, known_values
 from grader.base.names import closest, near
+from grader.base.records import Named
 from grader.base.source import Edits
 from grader.base.text import enumerated, quoted
 from grader.lab.hints.edits import MAX_IN_HINT
@@ -28,9 +29,11 @@ _MAX_LINKS = 400  # of a robot: more are not compared
 # The ranks of pieces: values of a sibling of the student's own design; the reference's; the
 # student's own, corrected; several at once, or another structure.
 SIBLING, REFERENCE, OWN, STRUCTURE = range(4)
+_Sets = Sequence[Set]
+_Translation = Mapping[str, StringsByName]  # of names, by the kind of what has them
 
 
-class Piece(NamedTuple):
+class Piece(Named):
     """An edit that may undo a mistake.
 
     It has values to set, edits of the text, or both; what is wrong, and the link.
@@ -40,7 +43,7 @@ class Piece(NamedTuple):
 
     cause: str
     link: str
-    sets: tuple[Set, ...] = ()
+    sets: _Sets = ()
     edits: Edits = ()
     rank: int = REFERENCE
     around: Element | None = None
@@ -55,7 +58,7 @@ class Piece(NamedTuple):
 Pieces = Iterator[Piece]
 
 
-class MissingPart(NamedTuple):
+class MissingPart(Named):
     """A link or joint of the reference that a robot does not have: nothing writes it."""
 
     tag: str
@@ -73,7 +76,8 @@ class RobotDifference:
     """
 
     def __init__(self, draft: Draft, reference: Draft) -> None:
-        self.draft, self.reference = draft, reference
+        self.draft = draft
+        self.reference = reference
         links = [link.name for link in reference.robot.links]
         self.known = {*links, *(material.name for material in reference.robot.materials)}
         self._names = _translation(draft, reference)
@@ -92,10 +96,10 @@ class RobotDifference:
     @cached_property
     def missing(self) -> list[MissingPart]:
         """The links and joints of the reference that the robot does not have."""
-        parts: list[MissingPart] = []
+        parts = []
         for step in self._steps:
-            if step.verb == "add" and step.own_node.tag == "robot" and step.like is not None:
-                like: Element = step.like.of
+            if step.verb == "add" and step.own_node.tag == "robot" and step.like:
+                like = step.like.of
                 if like.tag == "link":
                     parts.append(MissingPart("link", like.get("name") or ""))
                 elif like.tag == "joint":
@@ -117,7 +121,7 @@ class RobotDifference:
         cause: str,
         edits: Edits = (),
         *,
-        sets: tuple[Set, ...] = (),
+        sets: _Sets = (),
         rank: int = REFERENCE,
         link: str = "",
         tag: str = "",
@@ -130,12 +134,12 @@ class RobotDifference:
         around = element if element.getparent() is self.draft.root else element.getparent()
         return Piece(cause, link or self.draft.find_link(element), sets, edits, rank, around)
 
-    def piece_of_sets(self, sets: Sequence[Set], rank: int = REFERENCE) -> Piece:
+    def piece_of_sets(self, sets: _Sets, rank: int = REFERENCE) -> Piece:
         """Return the piece that sets values of one element, named by what is wrong with them."""
         first = sets[0]
         return self.piece(first.owner, _cause(sets), sets=tuple(sets), rank=rank, tag=first.tag)
 
-    def each(self, sets: Sequence[Set]) -> Pieces:
+    def each(self, sets: _Sets) -> Pieces:
         """Yield the pieces that set each value alone, and all together."""
         yield from (self.piece_of_sets([one]) for one in sets)
         if len(sets) > 1:
@@ -149,13 +153,14 @@ class RobotDifference:
             f"<{element.tag}> is inside <{was.tag if was is not None else ''}>; it belongs in "
             f"<{parent.tag}>"
         )
-        edits = (*self.draft.remove(element), *self.draft.insert(parent, text))
+        edits = self.draft.remove(element) + self.draft.insert(parent, text)
         return self.piece(element, cause, edits)._replace(around=parent)
 
     def _misspelt_attributes(self) -> Pieces:
         """Give attributes that ROS 2 ignores the missing names that they are like."""
         for element in self.draft.root.iter(*TAGS):
-            known, given = TAGS[str(element.tag)].attributes.keys(), list(map(str, element.keys()))
+            known = TAGS[str(element.tag)].attributes.keys()
+            given = list(map(str, element.keys()))
             for name in given:
                 meant = closest(name, sorted(known - {*given})) if name not in known else None
                 if meant is not None:
@@ -205,13 +210,13 @@ class RobotDifference:
             every += sets
             yield self.piece(joint, f"the name {quoted(old)} of a joint", sets=sets, rank=STRUCTURE)
         if len(every) > 1:
-            names = enumerated([*map(quoted, self._names["joint"].values())], MAX_IN_HINT)
+            names = enumerated(map(quoted, self._names["joint"].values()), MAX_IN_HINT)
             yield Piece(f"the names {names} of joints", "", tuple(every), (), STRUCTURE)
 
-    def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
+    def _tree(self, draft: Draft, names: _Translation) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
         nodes = [_make_node(child, names) for child in children[: 3 * _MAX_LINKS]]
-        values: dict[str, str] = {}
+        values = {}
         if draft is self.reference and self.draft.root.get("name") is None:
             values["name"] = draft.root.get("name") or ""
         version = draft.root.get("version")
@@ -223,7 +228,8 @@ class RobotDifference:
         for values in _values_of_one(steps_of_one):
             yield from self._value_pieces(values)
         for step in steps_of_one:
-            own_node, like = step.own_node, step.like
+            own_node = step.own_node
+            like = step.like
             aliases = TAGS[own_node.tag].aliases if own_node.tag in TAGS else {}
             match step.verb:
                 case "rename" | "unset" if new := step.other or aliases.get(step.name):
@@ -232,21 +238,21 @@ class RobotDifference:
                         edits = self.draft.rename_attribute(own_node.of, step.name, new)
                     cause = f"the name of the attribute {new} of {{}}"
                     yield self.piece(own_node.of, cause, edits, rank=SIBLING)
-                case "retag" if like is not None:
+                case "retag" if like:
                     edits = self.draft.rename_tag(own_node.of, like.tag)
                     yield self.piece(own_node.of, f"the name of the tag <{like.tag}>", edits)
                 case "move" if step.parent is not None and like is not None:
                     yield self.moved(own_node.of, step.parent.of)
-                case "add" if like is not None and own_node.tag != "robot":
+                case "add" if like and own_node.tag != "robot":
                     yield from self._inner(own_node.of, like.of)
                 case "remove":
                     yield from self._remove(own_node)
 
     def _value_pieces(self, steps_of_one: Sequence[Step]) -> Pieces:
         """Yield the values of one element: each alone, and all together."""
-        element: Element = steps_of_one[0].own_node.of
+        element = steps_of_one[0].own_node.of
         wanted = {step.name: _wanted_value(step) for step in steps_of_one}
-        values = {name: value for name, value in wanted.items() if value is not None}
+        values = known_values(wanted)
         if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
             yield from self._rename(element, values.pop("name"))
         if "" in values:
@@ -271,7 +277,8 @@ class RobotDifference:
         This is a link with all that names it, or alone; a joint; or a material where it is used or
         defined.
         """
-        tag, old = str(element.tag), element.get("name", "")
+        tag = str(element.tag)
+        old = element.get("name", "")
         is_begun = 2 * sum(map(self.draft.robot.has_link, self.names)) >= len(self.names)
         if tag == "link" and not is_begun and old and near(old, [name], "link") is None:
             return  # nothing shows that it is this one
@@ -285,7 +292,8 @@ class RobotDifference:
 
     def _remove(self, node: Node) -> Pieces:
         """Remove what the reference does not have; an origin or axis gets its default."""
-        element, tag = node.of, node.tag
+        element = node.of
+        tag = node.tag
         around = element.getparent()
         # another one has the same name, or another joint the same child
         is_twice = any(self._uses[key] > 1 for key in _identities(element))
@@ -317,7 +325,8 @@ class RobotDifference:
             inner = find_child(parent, tag)
             sets = []
             for key, text in element.attrib.items():
-                name, wanted = str(key), normal(tag, str(key), str(text))
+                name = str(key)
+                wanted = normal(tag, str(key), str(text))
                 written = inner.get(name) if inner is not None else None
                 if normal(tag, name, written) != wanted:
                     sets.append(Set(parent, tag, name, wanted))
@@ -359,7 +368,7 @@ def _identities(element: Element) -> list[tuple[str, str, str]]:
     return [(str(element.tag), what, text) for what, text in texts if text]
 
 
-def _cause(sets: Sequence[Set]) -> str:
+def _cause(sets: _Sets) -> str:
     """Return what is wrong with the values of one element."""
     tag = sets[0].tag or str(sets[0].owner.tag)
     names = " and ".join(one.attribute for one in sets)
@@ -368,13 +377,13 @@ def _cause(sets: Sequence[Set]) -> str:
         return "{} is missing"
     if all(one.attribute not in one.element.attrib for one in sets if one.element is not None):
         return f"{what} is missing"
-    parts: list[str] = []
+    parts = []
     old: list[float] = []
     new: list[float] = []
     for one in sets:
         known = TAGS[tag].attributes.get(one.attribute) if tag in TAGS else None
         text = one.element.get(one.attribute) if one.element is not None else None
-        if known is None or not known.parts:
+        if not known or not known.parts:
             return what
         parts += [part or one.attribute for part in known.parts]
         old += read_values(known.default if text is None else text)
@@ -398,7 +407,7 @@ def normal(tag: str, attribute: str, text: str | None) -> str:
     """
     known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
     if text is None:
-        text = known.default or "" if known is not None else ""
+        text = known.default or "" if known else ""
     is_read = known is not None and known.parts and (len(known.parts) > 1 or text == text.rstrip())
     values = read_values(text) if is_read else ()
     if values:
@@ -411,13 +420,13 @@ def _wanted_value(step: Step) -> str | None:
 
     It is None if there is none.
     """
-    if step.verb == "set" and step.like is not None:
+    if step.verb == "set" and step.like:
         return step.like.values[step.name]
     known = TAGS[step.own_node.tag].attributes.get(step.name) if step.own_node.tag in TAGS else None
-    return known.default or None if known is not None else None
+    return known.default or None if known else None
 
 
-def _make_node(element: Element, names: Mapping[str, Mapping[str, str]]) -> Node:
+def _make_node(element: Element, names: _Translation) -> Node:
     """Return the node of an element, without values and elements that are the default."""
     tag = str(element.tag)
     attributes = TAGS[tag].attributes if tag in TAGS else {}
@@ -442,7 +451,7 @@ def _make_node(element: Element, names: Mapping[str, Mapping[str, str]]) -> Node
     return Node(tag, _keys(element, values), values, children, element)
 
 
-def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
+def _keys(element: Element, values: StringsByName) -> Sequence[str]:
     name = values.get("name", "") or values.get("reference", "")
     is_joint = element.tag == "joint" and element.getparent() is not None
     if is_joint and find_child(element, "child") is not None:
@@ -460,7 +469,7 @@ def _is_default(node: Node, *, is_moving: bool) -> bool:
 
 def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
     """Return what the joints and materials of the reference are called in the robot."""
-    joints: dict[str, str] = {}
+    joints = {}
     known = {joint.name for joint in reference.robot.joints}
     written = {joint.get("name") for joint in draft.joints()}
     for joint in reference.joints():
@@ -470,7 +479,7 @@ def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
             joints[joint.get("name") or ""] = own_name
     own_materials = [_make_node(material, {}) for material in draft.root.iterchildren("material")]
     materials = [_make_node(material, {}) for material in reference.root.iterchildren("material")]
-    called: dict[str, str] = {}
+    called = {}
     for node, like in paired(own_materials, materials).both:
         called[like.values.get("name", "")] = node.values.get("name", "")
     named = {name: own_name for name, own_name in called.items() if own_name}
@@ -491,7 +500,7 @@ def _values_of_one(steps_in_order: Iterable[Step]) -> Iterator[list[Step]]:
         yield together
 
 
-def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
+def _rename_link(draft: Draft, old: str, new: str) -> _Sets:
     """Return what gives a link another name, also where joints name it.
 
     There is nothing where several have the old one.

@@ -3,7 +3,8 @@
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, cast
+from itertools import starmap
+from typing import TYPE_CHECKING, cast
 
 from grader.base import markup
 from grader.base.element_edits import (
@@ -19,6 +20,9 @@ from grader.base.element_edits import (
     with_element,
     without_element,
 )
+from grader.base.grouping import StringsByName
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Edit, Edits, Source
 from grader.lab.hints.edits import Proposal
 from grader.lab.hints.robot_numbers import read_values
@@ -34,10 +38,12 @@ if TYPE_CHECKING:
 
 
 _MAX_WAYS = 4
-_COMMENT = re.compile(r"(?<![ \t])[ \t]*+<!--.*?(?:-->|\Z)", re.DOTALL)
+_COMMENT = on_use(r"(?<![ \t])[ \t]*+<!--.*?(?:-->|\Z)", re.DOTALL)
+_Elements = dict[str, Element]  # by name
+_Ways = list[Edits]  # to make one change
 
 
-class Set(NamedTuple):
+class Set(Named):
     """A new value of an attribute of an element.
 
     With a tag, it is that of its child of this tag, which may be missing.
@@ -74,7 +80,7 @@ class Draft:
     @classmethod
     def of(cls, reading: Reading) -> "Draft | None":
         """Return the draft of a robot that could be read."""
-        if reading.elements is None or reading.robot is None:
+        if reading.elements is None or not reading.robot:
             return None
         draft = cls(reading.elements, reading.robot, reading.source)
         draft.is_broken = reading.root is None
@@ -93,18 +99,18 @@ class Draft:
         return self._links.get(name)
 
     @cached_property
-    def _links(self) -> dict[str, Element]:
+    def _links(self) -> _Elements:
         return {link.get("name") or "": link for link in reversed(list(self.links()))}
 
     def find_joint(self, link: str) -> Element | None:
         """Return the parent joint of a link, also one whose parent does not exist."""
         joint = self._parents.get(link)
-        if joint is not None and joint.location is not None:
+        if joint and joint.location is not None:
             return self._elements[joint.location.tag]
         return self._joints.get(link)
 
     @cached_property
-    def _joints(self) -> dict[str, Element]:
+    def _joints(self) -> _Elements:
         return {read_end(joint, "child"): joint for joint in reversed(list(self.joints()))}
 
     def material(self, name: str) -> Element | None:
@@ -115,9 +121,9 @@ class Draft:
         return self._materials.get(name)
 
     @cached_property
-    def _materials(self) -> dict[str, Element]:
+    def _materials(self) -> _Elements:
         own_materials = list(self.root.iterchildren("material"))
-        materials: dict[str, Element] = {}
+        materials: _Elements = {}
         # One without content only names another one.
         for material in (*own_materials, *self.root.iter("material")):
             if len(material):
@@ -152,7 +158,8 @@ class Draft:
 
         An example is the visual origin of 'lidar', if `known`.
         """
-        owner, path = self.owner(element), [tag] if tag else []
+        owner = self.owner(element)
+        path = [tag] if tag else []
         inner = element
         while inner is not owner and inner is not self.root:
             path.insert(0, str(inner.tag))
@@ -170,10 +177,13 @@ class Draft:
             return f"the link {name!r}"
         return f"the {what} of {name!r}"
 
+    def _place(self, element: Element) -> tuple[Source, int]:
+        """Return the text that an element is written in, and where it starts there."""
+        return self.source.element(self._tags[element])
+
     def text(self, element: Element) -> str:
         """Return an element as it is written in the file, without comments."""
-        source, start = self.source.element(self._tags[element])
-        return _COMMENT.sub("", element_text(source, start))
+        return _COMMENT.sub("", element_text(*self._place(element)))
 
     def line(self, element: Element) -> int:
         """Return the line of an element, from 1."""
@@ -198,13 +208,13 @@ class Draft:
 
     def corrections(self, names: Sequence[str]) -> list[Proposal]:
         """Return edits that may correct what xacro refuses; `names` are those that may be meant."""
-        if self._expanded is not None:
-            return [Proposal(*correction) for correction in self._expanded.corrections(names)]
+        if self._expanded:
+            return list(starmap(Proposal, self._expanded.corrections(names)))
         return []
 
     def numbers(self, element: Element, attribute: str) -> "list[NumberDefinition]":
         """Return the definitions of the numbers from which xacro computes an attribute."""
-        if self._expanded is None:
+        if not self._expanded:
             return []
         return self._expanded.numbers(self._tags[element], attribute)
 
@@ -212,19 +222,18 @@ class Draft:
         self, element: Element, attribute: str, sets: Iterable[Set]
     ) -> dict[Element, str]:
         """Return the values that are set for the elements that come from the same text as one."""
-        if self._expanded is None:
+        if not self._expanded:
             return {}
         same = {self._elements[tag] for tag in self._expanded.siblings(self._tags[element])}
-        values: dict[Element, str] = {}
+        values = {}
         for change in sets:
             if change.attribute == attribute and change.element in same:
-                assert change.element is not None
                 values[change.element] = change.value
         return values
 
     def shared(self, sets: Iterable[Set]) -> frozenset[str]:
         """Return the links whose elements share a text of xacro with those that are set."""
-        if self._expanded is None:
+        if not self._expanded:
             return frozenset()
         links: set[str] = set()
         for change in sets:
@@ -233,14 +242,15 @@ class Draft:
                 links.update(self.find_link(self._elements[tag]) for tag in siblings)
         return frozenset(links)
 
-    def ways(self, sets: Collection[Set]) -> list[Edits]:
+    def ways(self, sets: Collection[Set]) -> _Ways:
         """Return the ways to set values; attributes and elements that are missing are added."""
-        ways: list[Edits] = [()]
+        ways: _Ways = [()]
         attributes: dict[Element, dict[str, str]] = {}
         children: dict[tuple[Element, str], dict[str, str]] = {}
-        done: set[tuple[Element, str]] = set()
+        done = set()
         for change in dict.fromkeys(sets):
-            element, name = change.element, change.attribute
+            element = change.element
+            name = change.attribute
             if element is None:
                 children.setdefault((change.owner, change.tag), {})[name] = change.value
             elif (element, name) in done:
@@ -252,7 +262,7 @@ class Draft:
                 if PARTS.get(name):  # numbers
                     value = merged(element.get(name) or "", value)
                 ways_of_value = self._list_ways(element, name, value, siblings)
-                ways = [(*before, *edits) for before in ways for edits in ways_of_value]
+                ways = [before + edits for before in ways for edits in ways_of_value]
                 ways = ways[:_MAX_WAYS]
             else:
                 attributes.setdefault(element, {})[name] = change.value
@@ -261,13 +271,13 @@ class Draft:
             added += self.add_attributes(element, values)
         for (owner, tag), values in children.items():
             added += self.insert(owner, empty_element(tag, values))
-        ways_that_change: list[Edits] = []
+        ways_that_change = []
         for edits in self._exchanged(sets, ways)[:_MAX_WAYS]:
             every_edit = dict.fromkeys((*edits, *added))
             ways_that_change.append(tuple(edit for edit in every_edit if edit.old != edit.new))
         return ways_that_change
 
-    def _exchanged(self, sets: Collection[Set], ways: list[Edits]) -> list[Edits]:
+    def _exchanged(self, sets: Collection[Set], ways: _Ways) -> _Ways:
         """Return the ways to set values: two that are exchanged get the text of each other.
 
         If names give both values, they may also be defined the wrong way round.
@@ -282,14 +292,14 @@ class Draft:
         ]
         if not all(wanted) or [read_values(first.value), read_values(second.value)] != wanted:
             return ways
-        source, start = self.source.element(self._tags[element])
-        first_text = _attribute_text(source, start, first.attribute)
-        second_text = _attribute_text(source, start, second.attribute)
+        place = self._place(element)
+        first_text = _attribute_text(*place, first.attribute)
+        second_text = _attribute_text(*place, second.attribute)
         if first_text is None or second_text is None:
             return ways
         edits = (
-            with_attribute(source, start, first.attribute, second_text),
-            with_attribute(source, start, second.attribute, first_text),
+            with_attribute(*place, first.attribute, second_text),
+            with_attribute(*place, second.attribute, first_text),
         )
         if "$" in first_text and "$" in second_text:
             return [*ways[:1], edits]
@@ -297,7 +307,7 @@ class Draft:
 
     def _list_ways(
         self, element: Element, attribute: str, value: str, others: Mapping[Element, str]
-    ) -> list[Edits]:
+    ) -> _Ways:
         """Return the ways to give an attribute another text.
 
         Elements that come from the same text get others.
@@ -306,7 +316,7 @@ class Draft:
         wanted = {tag: (element.get(attribute) or "", escaped(value))}
         for other, text in others.items():
             wanted[self._tags[other]] = (other.get(attribute) or "", escaped(text))
-        if self._expanded is not None:
+        if self._expanded:
             return self._expanded.rewrites(attribute, wanted)
         source, start = self.source.element(tag)
         rewritten = self._rewrite_broken(element, {attribute: value})
@@ -319,7 +329,7 @@ class Draft:
 
         The text stays as it is written.
         """
-        places = [self.source.element(self._tags[element]) for element in elements]
+        places = [self._place(element) for element in elements]
         texts = []
         for source, start in places:
             text = _attribute_text(source, start, attribute)
@@ -339,7 +349,7 @@ class Draft:
         """
         tag = self._tags[element]
         wanted = {tag: ((element.text or "").strip(), escaped(text))}
-        if self._expanded is not None:
+        if self._expanded:
             ways = self._expanded.rewrites("", wanted)
             if ways:
                 return ways[0]
@@ -352,50 +362,48 @@ class Draft:
 
     def rename_attribute(self, element: Element, old: str, new: str) -> Edits:
         """Return the edit that gives an attribute another name."""
-        return renamed_attribute(*self.source.element(self._tags[element]), old, new)
+        return renamed_attribute(*self._place(element), old, new)
 
     def rename_tag(self, element: Element, new: str) -> Edits:
         """Return the edits that give an element another name, at its start and at its end."""
-        return renamed_tag(*self.source.element(self._tags[element]), new)
+        return renamed_tag(*self._place(element), new)
 
-    def add_attributes(self, element: Element, values: Mapping[str, str]) -> Edits:
+    def add_attributes(self, element: Element, values: StringsByName) -> Edits:
         """Return the edit that adds attributes to an element, or writes a broken tag with them."""
         rewritten = self._rewrite_broken(element, values)
         if rewritten is not None:
             return rewritten
-        source, start = self.source.element(self._tags[element])
+        source, start = self._place(element)
         end = markup.name_end(source.text, start)
         return (source.edit(start, end, f"{source.text[start:end]}{attributes_text(values)}"),)
 
-    def _rewrite_broken(self, element: Element, values: Mapping[str, str]) -> Edits | None:
+    def _rewrite_broken(self, element: Element, values: StringsByName) -> Edits | None:
         """Return the edit of a broken tag that gets attributes; None if it is not broken."""
         if not self.is_broken:
             return None
         from grader.ros.xml.repair import rewritten_tag  # late: its patterns take long
 
-        source, start = self.source.element(self._tags[element])
+        source, start = self._place(element)
         given = {str(name): str(value) for name, value in element.attrib.items()}
         return rewritten_tag(source, start, str(element.tag), {**given, **values})
 
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""
-        return (with_child(*self.source.element(self._tags[parent]), xml),)
+        return (with_child(*self._place(parent), xml),)
 
     def remove(self, element: Element) -> Edits:
         """Return the edit that removes an element."""
-        source, start = self.source.element(self._tags[element])
-        return (without_element(source, start),)
+        return (without_element(*self._place(element)),)
 
     def replace(self, element: Element, xml: str) -> Edits:
         """Return the edit that replaces an element."""
-        source, start = self.source.element(self._tags[element])
-        return (with_element(source, start, xml),)
+        return (with_element(*self._place(element), xml),)
 
 
 def _attribute_text(source: Source, start: int, name: str) -> str | None:
     """Return the text of an attribute of the start tag at an offset, as it is written."""
     span = markup.attribute(source.text, start, name)
-    if span is None:
+    if not span:
         return None
     return source.text[span.value_start : span.value_end]
 

@@ -6,8 +6,8 @@ The mistake is in a sign, a unit, or the order.
 from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 from math import isclose, radians
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.text import enumerated
 from grader.ros.urdf.numbers import NumberError, numbers
 
@@ -17,13 +17,13 @@ LARGE = 3.0  # metres: no part of a robot for a desk is as large
 _SAME = 1e-6
 
 
-class _NumberMistake(NamedTuple):
+class _NumberMistake(Named):
     """What a person does to numbers.
 
     It has the units, the size from which it is likely, how to undo it, and the cause.
     """
 
-    units: tuple[str, ...]
+    units: Sequence[str]
     least: float
     correct: Callable[[float], float]
     cause: str
@@ -33,7 +33,9 @@ class _NumberMistake(NamedTuple):
         return not self.units or unit in self.units
 
 
-_LENGTHS, _ANGLES, _ANY = ("m",), ("rad", "rad or m"), ()
+_LENGTHS = ("m",)
+_ANGLES = ("rad", "rad or m")
+_ANY = ()
 _MISTAKES = (
     _NumberMistake(_ANY, 0.0, lambda value: -value, "the sign of {}"),
     _NumberMistake(_ANGLES, 6.3, radians, "the unit of {} is degrees; it should be radians"),
@@ -98,7 +100,7 @@ def plausible(unit: str, old: Values) -> Iterator[Values]:
                 yield (*old[:index], mistake.correct(value), *old[index + 1 :])
     for one, other in combinations(range(len(old)), 2):
         if old[one] != old[other]:
-            exchanged = [*old]
+            exchanged = list(old)
             exchanged[one], exchanged[other] = old[other], old[one]
             yield tuple(exchanged)
 

@@ -4,14 +4,14 @@ The student's own numbers with another sign, order or unit, doubled or halved; t
 the other side; and all steps that one link, or one element, needs together.
 """
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import chain, combinations
+from itertools import chain, combinations, starmap
 from math import inf
 from typing import TYPE_CHECKING
 
 from grader.base.element_edits import format_number, format_numbers
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.patterns import on_use
 from grader.base.source import Edits
 from grader.base.transforms import Z_AXIS
 from grader.lab.hints.robot_difference import (
@@ -43,7 +43,7 @@ _SIDES = {
     "r": "l",
     "upper": "lower",
 }
-_WORD = re.compile(r"[^\W\d_]+")
+_WORD = on_use(r"[^\W\d_]+")
 _EXCHANGED = "parent and child of {} are exchanged"
 _OTHER_END = {"parent": "child", "child": "parent"}
 _MAX_ONE_BY_ONE = 3  # values whose mistakes are named
@@ -137,7 +137,7 @@ def of_own(difference: RobotDifference, links: Iterable[str]) -> Pieces:
 
     Where xacro computes them, yield the numbers that they come from.
     """
-    seen: set[Edits] = set()
+    seen = set()
     is_alone = difference.draft is difference.reference
     for link in links:
         like = _first_parts(difference.reference, link)
@@ -221,7 +221,7 @@ def _exchanged_lengths(
     for one, other in combinations(lengths, 2):
         edits: Edits = ()
         if one.text != other.text:
-            edits = (*one.edits_with(other.text), *other.edits_with(one.text))
+            edits = one.edits_with(other.text) + other.edits_with(one.text)
         yield difference.piece(element, cause, edits, rank=OWN)
 
 
@@ -240,12 +240,12 @@ def reversed_joints(difference: RobotDifference) -> list[Element]:
 
     In the reference, the child is above the parent.
     """
-    parents: dict[str, str] = {}
+    parents = {}
     for joint in difference.reference.joints():
         parents[read_end(joint, "child")] = read_end(joint, "parent")
 
     def links_above(link: str) -> set[str]:
-        above: set[str] = set()
+        above = set()
         while (link := parents.get(link, "")) and link not in above:
             above.add(link)
         return above
@@ -262,7 +262,7 @@ def exchanges(difference: RobotDifference) -> list[Piece]:
 
     These are parent and child of reversed joints, and the children of two joints of both sides.
     """
-    pieces: list[Piece] = []
+    pieces = []
     for joint in reversed_joints(difference):
         edits = _exchange_ends(difference.draft, (joint, "parent"), (joint, "child"))
         pieces.append(difference.piece(joint, _EXCHANGED, edits))
@@ -280,7 +280,7 @@ def exchanges(difference: RobotDifference) -> list[Piece]:
 
 
 def _exchange_ends(draft: Draft, *ends: tuple[Element, str]) -> Edits:
-    elements = [find_child(joint, role) for joint, role in ends]
+    elements = list(starmap(find_child, ends))
     return draft.exchange(
         *[element for element in elements if element is not None], attribute="link"
     )
@@ -306,10 +306,10 @@ def leveled_supports(difference: RobotDifference, links: Sequence[str], base: st
         return
     element = difference.draft.find_joint(link)
     origin = find_child(element, "origin") if element is not None else None
-    if origin is None or joint.origin is None or not height:
+    if origin is None or not joint.origin or not height:
         return
     moved = [old - height * part for old, part in zip(joint.origin.xyz, up, strict=True)]
-    xyz = format_numbers(tuple(round(number, 6) for number in moved))
+    xyz = format_numbers(round(number, 6) for number in moved)
     yield difference.piece_of_sets([Set(origin, "", "xyz", xyz)], OWN)
 
 
@@ -318,13 +318,13 @@ def in_another_unit(difference: RobotDifference) -> Pieces:
 
     This is for a robot of which they are all in centimetres or millimetres.
     """
-    lengths = [*_list_lengths(difference.draft)]
+    lengths = list(_list_lengths(difference.draft))
     if not any(element.tag != "origin" and max(values) >= LARGE for element, _, values in lengths):
         return
     for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")):
         sets = []
         for element, name, values in lengths:
-            metres = format_numbers(tuple(value / factor for value in values))
+            metres = format_numbers(value / factor for value in values)
             sets.append(Set(element, "", name, metres))
         yield Piece(f"the unit of all lengths: {unit}, not metres", "", tuple(sets), (), OWN)
 
@@ -388,11 +388,13 @@ def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -
 def _causes(difference: RobotDifference, changes: Sequence[Set]) -> str:
     """Return what is wrong with values; the ends of a joint that are exchanged are one mistake."""
     ends = {(change.owner.getparent(), str(change.owner.tag)): change for change in changes}
-    exchanged, others = list[str](), list[str]()
+    exchanged = []
+    others = []
     for change in changes:
-        joint, role = change.owner.getparent(), str(change.owner.tag)
+        joint = change.owner.getparent()
+        role = str(change.owner.tag)
         other = ends.get((joint, _OTHER_END.get(role, "")))
-        if other is None or change.value != other.owner.get("link"):
+        if not other or change.value != other.owner.get("link"):
             others.append(difference.piece_of_sets([change]).cause)
         elif role == "parent" and joint is not None:
             exchanged.append(difference.piece(joint, _EXCHANGED).cause)

@@ -7,22 +7,24 @@ files; what grading proves becomes a `FoundHint`, and in a report a `Hint`. All 
 the `FixedFiles`.
 """
 
-import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from decimal import Decimal
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from grader.base.errors import InputError, NotDecided
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.slips import Slip
 from grader.base.source import Certainty, Edits
 from grader.base.text import enumerated
 from grader.files.limits import ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT
 from grader.lab.grading.deciding import decide
-from grader.lab.grading.report import Meant, Report, Result
+from grader.lab.grading.not_known import judge_known
+from grader.lab.grading.report import Report, Result
 from grader.lab.hints.edits import FoundHint, Proposal
 from grader.lab.hints.generators import STAGES, Situation, Stage, leaves_others, missing_hints
 from grader.lab.hints.robot_difference import REFERENCE, STRUCTURE
@@ -43,9 +45,11 @@ _HARMFUL = ("rejects", "drops", "undetermined")
 _RESERVE = 20  # gradings for proofs
 _AROUND = " ,\r\n"  # of a text that is added
 _MAX_REACTIONS = 3
-_WORD = re.compile(r"\w+")
+_WORD = on_use(r"\w+")
 _MAX_PARTS = 5  # edits of a hint of which each is tried without
 _MAX_WITHOUT = 30  # gradings that say which of the hints another one needs
+_Gains = dict[str, Decimal]  # points by criterion
+_EditGroups = Sequence[Edits]
 
 
 class _NoTrialsLeft(Exception):
@@ -60,7 +64,8 @@ class Trials:
 
     def __init__(self, rubric: Rubric, submission: Submission, results: _Results) -> None:
         parts = {part.id for part in rubric.parts if part.needs != "files"}
-        self.rubric, self.submission = rubric, submission
+        self.rubric = rubric
+        self.submission = submission
         self.results = {
             name: result for name, result in results.items() if result.criterion.part in parts
         }
@@ -96,12 +101,13 @@ class Trials:
         if self.left < 0:
             raise _NoTrialsLeft
         edited = self.edited(edits, whole=whole)
-        if edited is None or _has_new_problems(self.submission, edited):
+        if not edited or _has_new_problems(self.submission, edited):
             return {}
         if _has_new_build_errors(self.submission, edited):
             return {}
-        results: dict[str, Result] = {}
-        for result in decide(self.rubric, edited, wanted):
+        results = {}
+        decided = decide(self.rubric, edited, wanted)
+        for result in judge_known(self.rubric, edited, decided, wanted):
             name = result.criterion.id
             if isinstance(wanted, Mapping) and is_worse(wanted[name], result):
                 return {}  # at once: a shape in another one takes long to measure
@@ -117,8 +123,9 @@ class Trials:
             return False
         if path not in self._is_of_reference:
             self._is_of_reference[path] = False
-            data, solution = content(self.submission, path), self.rubric.solution
-            if data and solution is not None and self.submission.package is not None:
+            data = content(self.submission, path)
+            solution = self.rubric.solution
+            if data and solution and self.submission.package:
                 with suppress(InputError):
                     for file in solution.submission.whole_tree.files.values():
                         if file.size == len(data) and file.read(URDF_LIMIT) == data:
@@ -182,10 +189,11 @@ def _has_new_build_errors(before: Submission, after: Submission) -> bool:
     """
     if before.package is None or after.package is None:
         return False
-    was, now = before.package.installation, after.package.installation
+    was = before.package.installation
+    now = after.package.installation
     if was is None or now is None:
         return False
-    if was.fault is not None or was.faults or not was.is_called:
+    if was.fault or was.faults or not was.is_called:
         return False  # what is wrong after that line shows only now
     known = {(stop.path, stop.reason) for stop in was.stops}
     return any((stop.path, stop.reason) not in known for stop in now.stops)
@@ -200,8 +208,8 @@ def _count_connections(submission: Submission | None) -> Counter[tuple[str, str]
 
     counts: Counter[tuple[str, str]] = Counter()
     with suppress(NotDecided):
-        assert submission is not None
-        for _, launch in submission.workspace.launches.roots:
+        assert submission
+        for launch in submission.workspace.launches.outermost:
             path = launch.source.path
             graph = launch_graph(submission.workspace, path)
             folder = path.rpartition("/")[0]
@@ -212,7 +220,7 @@ def _count_connections(submission: Submission | None) -> Counter[tuple[str, str]
 def _repeated(urdf: Read) -> set[tuple[str, str]]:
     """Return the names that several links have, and the links that several joints move."""
     draft = Draft.of(urdf.loaded)
-    if draft is None:
+    if not draft:
         return set()
     names = Counter(("link", link.get("name") or "") for link in draft.links())
     names.update(("joint", read_end(joint, "child")) for joint in draft.joints())
@@ -233,7 +241,8 @@ def is_worse(before: Result, after: Result) -> bool:
 
     An adjusted one is never worse.
     """
-    was, status = before.outcome.status, after.outcome.status
+    was = before.outcome.status
+    status = after.outcome.status
     if after.is_adjusted:
         return False
     if was != status and (was == "passed" or status in ("pending", "errored")):
@@ -241,9 +250,9 @@ def is_worse(before: Result, after: Result) -> bool:
     return after.points < before.points
 
 
-def sum_costs(results: _Results) -> dict[str, Decimal]:
+def sum_costs(results: _Results) -> _Gains:
     """Return what each failed criterion costs, with the criteria that are skipped because of it."""
-    lost: dict[str, Decimal] = {}
+    lost: _Gains = {}
     for name, result in results.items():
         if result.is_lost:
             cause = result.because if result.because in results else None
@@ -253,7 +262,7 @@ def sum_costs(results: _Results) -> dict[str, Decimal]:
     }
 
 
-def list_gains(before: _Results, after: _Results) -> dict[str, Decimal]:
+def list_gains(before: _Results, after: _Results) -> _Gains:
     """Return the criteria that pass now and did not before, with the points that this gives."""
     return {
         name: result.points - before[name].points
@@ -266,31 +275,34 @@ def list_gains(before: _Results, after: _Results) -> dict[str, Decimal]:
 
 def judged_results(report: Report) -> dict[str, Result]:
     """Return the results that hints begin with: those on the words that are meant."""
-    results = report.results if report.meant is None else report.meant.results
+    results = report.results if not report.meant else report.meant.results
     return {result.criterion.id: result for result in results}
 
 
-def hints_on_slips(meant: Meant | None) -> list[FoundHint]:
+def hints_on_slips(report: Report) -> list[FoundHint]:
     """Return the hints that correct slips.
 
     Each gives its criterion the points, unless that fails all the same.
     """
-    if meant is None:
-        return []
-    judged = {result.criterion.id: result for result in meant.results}
+    judged = judged_results(report)
     of_payers: dict[str, list[Slip]] = {}
-    for paid in meant.paid:
+    for paid in report.meant.paid if report.meant else ():
         of_payers.setdefault(paid.payer, []).append(paid.slip)
     hints = []
     for payer, slips in of_payers.items():
-        edits = tuple(edit for slip in slips for edit in slip.edits)
-        cause = enumerated(list(dict.fromkeys(slip.reaction for slip in slips)), _MAX_REACTIONS)
+        edits = _edits_of(slips)
+        cause = enumerated(dict.fromkeys(slip.reaction for slip in slips), _MAX_REACTIONS)
         is_passed = judged[payer].outcome.status == "passed"
         gains = {payer: judged[payer].criterion.points} if is_passed else {}
         # A hint never writes a part that is missing, such as a call of rclpy.init().
         words = cause if _adds_part(edits) else ""
         hints.append(FoundHint(Proposal(edits, cause), gains, words=words))
     return hints
+
+
+def _edits_of(fixes: Iterable[Slip | FoundHint]) -> Edits:
+    """Return the edits of slips or hints, one after another."""
+    return tuple(edit for fix in fixes for edit in fix.edits)
 
 
 def _adds_part(edits: Edits) -> bool:
@@ -300,22 +312,22 @@ def _adds_part(edits: Edits) -> bool:
     return any(not removed.issuperset(_WORD.findall(new)) for new in inserted)
 
 
-class _Tried(NamedTuple):
+class _Tried(Named):
     """A proposal that was graded alone, after the edits so far."""
 
     proposal: Proposal
     passes: frozenset[str]  # the criteria that pass with it, and did not before
 
 
-class _Proof(NamedTuple):
+class _Proof(Named):
     """What a proposal gains, and the results then.
 
     The gains are as a hint says them, and together with all edits before it.
     """
 
     proposal: Proposal
-    gains: Mapping[str, Decimal]
-    together: Mapping[str, Decimal]
+    gains: _Gains
+    together: _Gains
     results: _Results
     is_late: bool
 
@@ -326,15 +338,15 @@ def _is_reverse(one: Proposal, other: Proposal) -> bool:
     return {(edit.old, edit.new) for edit in one.edits} == reversed_changes
 
 
-def _leave_out(groups: Sequence[Edits], is_enough: Callable[[Edits], bool]) -> tuple[Edits, ...]:
+def _leave_out(groups: _EditGroups, is_enough: Callable[[Edits], bool]) -> _EditGroups:
     """Return the groups of edits without those that are not needed.
 
     The last ones are dropped first, because the first gain most. Without trials, the rest stay.
     """
-    kept = tuple(groups)
+    kept = groups
     with suppress(_NoTrialsLeft):
         for group in reversed(groups):
-            others = tuple(one for one in kept if one != group)
+            others = [one for one in kept if one != group]
             if is_enough(tuple(edit for one in others for edit in one)):
                 kept = others
     return kept
@@ -365,8 +377,9 @@ class HintSearch:
         self._situation_of = partial(
             Situation, wanted=trials.rubric.links, reference=reference, package=package
         )
-        self.found: list[FoundHint] = [*slips]
+        self.found = list(slips)
         self.slips = tuple(slips)
+        self._corrected = _edits_of(slips)
         self._situation = self._situation_of(trials.submission)
         if slips:
             self._situation = self._situation_after(self.edits)
@@ -383,7 +396,7 @@ class HintSearch:
     @property
     def edits(self) -> Edits:
         """The edits of all hints."""
-        return tuple(edit for hint in self.found for edit in hint.edits)
+        return _edits_of(self.found)
 
     def run(self) -> "HintSearch":
         """Search until nothing more is found, or the budget is spent."""
@@ -413,32 +426,31 @@ class HintSearch:
 
     def _situation_after(self, edits: Edits) -> Situation:
         edited = self.trials.edited(edits) if edits else None
-        if edited is not None:
+        if edited:
             return self._situation_of(edited)
         return self._situation
 
     def _verify(self) -> None:
         """Take no hint back only if all together hold where the submission is read from scratch."""
         if self.found and not self.trials.graded(self.edits, self.results, whole=True):
-            self.found, self.results = [*self.slips], self.trials.results
+            self.found, self.results = list(self.slips), self.trials.results
 
     def _name_needed_hints(self) -> None:
         """Drop from each late hint the earlier hints without which it gives the points, too.
 
         A criterion that is carried has them.
         """
-        corrected = tuple(edit for slip in self.slips for edit in slip.edits)
         for index, hint in enumerate(self.found):
 
             def still_gains(before: Edits, needed_hint: FoundHint = hint) -> bool:
                 _, after = self._gains(
-                    (*corrected, *before), needed_hint.edits, self.trials.results
+                    self._corrected + before, needed_hint.edits, self.trials.results
                 )
                 return all(name in after and not after[name].is_lost for name in needed_hint.gains)
 
             self.found[index] = hint._replace(after=_leave_out(hint.after, still_gains))
 
-    def edits_needed_for(self, name: str) -> tuple[Edits, ...]:
+    def edits_needed_for(self, name: str) -> _EditGroups:
         """Return the edits of hints that a criterion without a hint of its own needs to pass."""
 
         def passes(edits: Edits) -> bool:
@@ -482,7 +494,7 @@ class HintSearch:
             for name in self._lost
             if has_package or self._criteria[name].check.subject != "package"
         ]
-        seen: set[Edits] = set()
+        seen = set()
         for proposals in stage(self._situation, [self._criteria[name] for name in lost]):
             with self.trials.isolated():
                 for proposal in proposals:
@@ -505,7 +517,7 @@ class HintSearch:
 
     def _passes_with(self, proposal: Proposal, lost: Collection[str]) -> frozenset[str]:
         """Return which of the lost criteria pass with a proposal."""
-        results = self.trials.graded((*self.edits, *proposal.edits), lost)
+        results = self.trials.graded(self.edits + proposal.edits, lost)
         return frozenset(
             name for name, result in results.items() if result.outcome.status == "passed"
         )
@@ -527,12 +539,12 @@ class HintSearch:
         """Add the hint of a proposal if it is proven, and return whether it was added."""
         wanted = best.passes & {*self._lost}
         proof = self._find_proof(best.proposal, wanted)
-        if proof is None or self._is_half(best, proof.results) or self._disconnects(proof):
+        if not proof or self._is_half(best, proof.results) or self._disconnects(proof):
             return False
         best = best._replace(proposal=proof.proposal)
         equal = self._equal_to(best, proof.together, wanted, tried)
         is_of_robot = all(edit.path.endswith((".urdf", ".xacro")) for edit in proof.proposal.edits)
-        if equal is not None and (is_of_robot or _is_reverse(proof.proposal, equal.proposal)):
+        if equal and (is_of_robot or _is_reverse(proof.proposal, equal.proposal)):
             name = max(
                 (criterion for criterion in self._criteria if criterion in wanted), key=self._weight
             )
@@ -541,11 +553,11 @@ class HintSearch:
             )
             self._told |= wanted
             return False
-        certainty: Certainty = "preferred" if equal is None else "one of several"
-        after: tuple[Edits, ...] = ()
+        certainty: Certainty = "preferred" if not equal else "one of several"
+        after: _EditGroups = ()
         if proof.is_late:
             after = tuple(hint.edits for hint in self.found if hint not in self.slips)
-        other = equal.proposal if equal is not None else None
+        other = equal.proposal if equal else None
         self.found.append(FoundHint(proof.proposal, proof.gains, certainty, after, equal=other))
         self.results = proof.results
         self._refused = set()
@@ -560,7 +572,7 @@ class HintSearch:
         if all(edit.path.endswith(ROBOT_ENDINGS) for edit in edits):
             return False
         before = self.trials.edited(self.edits) if self.edits else self.trials.submission
-        after = self.trials.edited((*self.edits, *edits))
+        after = self.trials.edited(self.edits + edits)
         return bool(_count_connections(before) - _count_connections(after))
 
     def _weight(self, name: str) -> tuple[bool, bool, Decimal]:
@@ -586,10 +598,10 @@ class HintSearch:
             return None
         if proposal.rank in (REFERENCE, STRUCTURE) and 1 < len(edits) <= _MAX_PARTS:
             edits, together, after = self._needed(edits, together, after)
-        gains, is_late = together, False
+        gains = together
+        is_late = False
         if self.found:
-            corrected = tuple(edit for slip in self.slips for edit in slip.edits)
-            alone, _ = self._gains(corrected, edits, self.trials.results)
+            alone, _ = self._gains(self._corrected, edits, self.trials.results)
             is_late = wanted.isdisjoint(alone)
             gains = together if is_late else alone
         if gains.keys().isdisjoint(wanted):
@@ -599,14 +611,14 @@ class HintSearch:
         new_gains = self._without_known(gains) or gains
         return _Proof(proposal._replace(edits=edits), new_gains, together, after, is_late)
 
-    def _without_known(self, gains: Mapping[str, Decimal]) -> dict[str, Decimal]:
+    def _without_known(self, gains: _Gains) -> _Gains:
         """Return what edits gain that no hint gains which was found before."""
         known = {name for hint in self.found for name in hint.gains}
         return {name: points for name, points in gains.items() if name not in known}
 
     def _needed(
-        self, edits: Edits, gains: dict[str, Decimal], after: _Results
-    ) -> tuple[Edits, dict[str, Decimal], _Results]:
+        self, edits: Edits, gains: _Gains, after: _Results
+    ) -> tuple[Edits, _Gains, _Results]:
         """Leave out changes of values without which the others gain as much.
 
         Return the rest with what it gains.
@@ -617,13 +629,15 @@ class HintSearch:
                 break
             left, results = self._gains(self.edits, rest, self.results)
             if gains.keys() <= left.keys():
-                edits, gains, after = rest, left, results
+                edits = rest
+                gains = left
+                after = results
         return edits, gains, after
 
     def _equal_to(
         self,
         best: _Tried,
-        gains: Mapping[str, Decimal],
+        gains: _Gains,
         wanted: frozenset[str],
         tried: Iterable[_Tried],
     ) -> _Tried | None:
@@ -634,8 +648,9 @@ class HintSearch:
         """
         lost = set(self._lost)
         known = {best.proposal.edits, *self._refused}
-        order, places = self._order(best, lost), best.proposal.places
-        added: set[str] = set()  # also in the next line
+        order = self._order(best, lost)
+        places = best.proposal.places
+        added = set()  # also in the next line
         for edit in best.proposal.edits:
             if not edit.old:
                 added.add(edit.new.strip(_AROUND))
@@ -674,12 +689,10 @@ class HintSearch:
                 return True
         return False
 
-    def _gains(
-        self, before: Edits, edits: Edits, against: _Results
-    ) -> tuple[dict[str, Decimal], _Results]:
+    def _gains(self, before: Edits, edits: Edits, against: _Results) -> tuple[_Gains, _Results]:
         """Return what edits gain, with the results.
 
         It is nothing where a criterion is worse with them.
         """
-        after = self.trials.graded((*before, *edits), against)
+        after = self.trials.graded(before + edits, against)
         return list_gains(against, after), after

@@ -4,15 +4,17 @@ Nodes are paired by what they are recognised by, then by likeness, and compared.
 difference is independent of the others: a caller makes edits of the steps that it needs.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Literal, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import Any, Literal
 
+from grader.base.grouping import Strings, StringsByName
 from grader.base.names import closest
+from grader.base.records import Named
 
 _ORDER = {"add": 1, "remove": 2}  # of the steps, after all that set values
 
 
-class Node(NamedTuple):
+class Node(Named):
     """A node of a tree.
 
     It has its tag, what it is recognised by (the most reliable first), its values, and its
@@ -22,8 +24,8 @@ class Node(NamedTuple):
     """
 
     tag: str
-    keys: tuple[str, ...]
-    values: Mapping[str, str]
+    keys: Sequence[str]
+    values: StringsByName
     children: "Sequence[Node]"
     of: Any = None
 
@@ -34,7 +36,11 @@ class Node(NamedTuple):
             yield from child.walk()
 
 
-class Step(NamedTuple):
+_Nodes = Sequence[Node]
+_Pair = tuple[Node, Node]
+
+
+class Step(Named):
     """One step from a tree to another.
 
     It is what happens to `own_node`, a node of the first tree, as in `like` of the other one.
@@ -52,13 +58,13 @@ class Step(NamedTuple):
     parent: Node | None = None
 
 
-class _Pairs(NamedTuple):
+class _Pairs(Named):
     """Two lists of nodes, paired.
 
     These are those that belong together, those of the first alone, and those of the second alone.
     """
 
-    both: list[tuple[Node, Node]]
+    both: list[_Pair]
     extra: list[Node]
     missing: list[Node]
 
@@ -68,15 +74,16 @@ def steps(own_node: Node, like: Node) -> list[Step]:
 
     First is what is to move, then the values, then what is to be added and removed.
     """
-    every_step = [*_steps(own_node, like)]
+    every_step = list(_steps(own_node, like))
     spare = [step.own_node for step in every_step if step.verb == "remove"]
-    moved: list[Step] = []
-    left: list[Step] = []
+    moved = []
+    left = []
     for step in every_step:
-        other, alike = step.like, None
-        if step.verb == "add" and other is not None:
+        other = step.like
+        alike = None
+        if step.verb == "add" and other:
             alike = next((node for node in spare if _is_alike(node, other)), None)
-        if other is None or alike is None:
+        if not other or not alike:
             left.append(step)
         else:
             moved.append(Step("move", alike, other, parent=step.own_node))
@@ -86,9 +93,9 @@ def steps(own_node: Node, like: Node) -> list[Step]:
     return moved + sorted(kept, key=lambda step: _ORDER.get(step.verb, 0))
 
 
-def _without_removals(steps_left: Sequence[Step], spare: Sequence[Node]) -> list[Step]:
+def _without_removals(steps_left: Sequence[Step], spare: _Nodes) -> list[Step]:
     """Return the steps without the removal of nodes that are moved: those that are not `spare`."""
-    kept: list[Step] = []
+    kept = []
     for step in steps_left:
         was_moved = not any(node is step.own_node for node in spare)
         if step.verb != "remove" or not was_moved:
@@ -121,7 +128,7 @@ def _values(own_node: Node, like: Node) -> Iterator[Step]:
     yield from (Step("set", own_node, like, name) for name in missing)
 
 
-def paired(own_nodes: Sequence[Node], like: Sequence[Node]) -> _Pairs:
+def paired(own_nodes: _Nodes, like: _Nodes) -> _Pairs:
     """Pair nodes.
 
     They are paired by tag and all keys, then by each key, then by tag and likeness, then by similar
@@ -132,12 +139,12 @@ def paired(own_nodes: Sequence[Node], like: Sequence[Node]) -> _Pairs:
     parts = [slice(0, depth), *(slice(index, index + 1) for index in range(depth))]
     for part in parts:
         pairing.pair_by_keys(part)
-    for other in [*pairing.missing]:
+    for other in list(pairing.missing):
         alike = [node for node in pairing.extra if node.tag == other.tag]
         if alike:
             scores = [_likeness(node, other) for node in alike]
             pairing.pair(alike[scores.index(max(scores))], other)
-    for other in [*pairing.missing]:
+    for other in list(pairing.missing):
         near_tag = closest(other.tag, [node.tag for node in pairing.extra])
         for node in pairing.extra:
             if node.tag == near_tag:
@@ -149,10 +156,11 @@ def paired(own_nodes: Sequence[Node], like: Sequence[Node]) -> _Pairs:
 class _Pairing:
     """The nodes of two lists that are being paired."""
 
-    def __init__(self, own_nodes: Sequence[Node], like: Sequence[Node]) -> None:
+    def __init__(self, own_nodes: _Nodes, like: _Nodes) -> None:
         self.own_nodes = own_nodes
-        self.extra, self.missing = [*own_nodes], [*like]
-        self.both: list[tuple[Node, Node]] = []
+        self.extra = list(own_nodes)
+        self.missing = list(like)
+        self.both: list[_Pair] = []
 
     def pair(self, node: Node, other: Node) -> None:
         """Pair two nodes, which belong to no other one then."""
@@ -162,14 +170,14 @@ class _Pairing:
 
     def pair_by_keys(self, part: slice) -> None:
         """Pair the nodes with the same tag and the same keys, of which one part counts."""
-        for other in [*self.missing]:
+        for other in list(self.missing):
             for node in self.extra:
                 is_same = node.tag == other.tag and node.keys[part] == other.keys[part]
                 if is_same and any(other.keys[part]):
                     self.pair(node, other)
                     break
 
-    def in_order(self) -> list[tuple[Node, Node]]:
+    def in_order(self) -> list[_Pair]:
         """Return the pairs in the order of the first list."""
         return [pair for node in self.own_nodes for pair in self.both if pair[0] is node]
 
@@ -179,7 +187,8 @@ def _likeness(one: Node, other: Node) -> float:
 
     This is the share of their values and of the tags in them that both have.
     """
-    mine, its = _content(one), _content(other)
+    mine = _content(one)
+    its = _content(other)
     return len(mine & its) / max(len(mine | its), 1)
 
 
@@ -191,8 +200,8 @@ def _is_alike(one: Node, other: Node) -> bool:
     return has_same_key or _likeness(one, other) > 0.5
 
 
-def _content(node: Node) -> set[tuple[str, ...]]:
-    content: set[tuple[str, ...]] = set()
+def _content(node: Node) -> set[Strings]:
+    content: set[Strings] = set()
     for inner in node.walk():
         content.add((inner.tag,))
         content.update((inner.tag, *pair) for pair in inner.values.items())

@@ -3,11 +3,12 @@
 They are criteria with what they are worth, parts, evidence, the late penalty, and ignored mutants.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 from decimal import Decimal
 from typing import Any, NamedTuple
 
+from grader.base.records import Named
 from grader.base.text import counted_points, format_points
 from grader.lab.checks.check import Check
 from grader.lab.checks.outcome import WRONG, Outcome
@@ -23,7 +24,7 @@ class Carried(NamedTuple):
     Points are kept where one of `causes` failed and the check, another fact, passes.
     """
 
-    causes: tuple[str, ...]
+    causes: Sequence[str]
     check: Check
     arguments: Mapping[str, Any]
     at: Mapping[str, float] = {}  # positions of joints, if not those of the criterion
@@ -33,7 +34,7 @@ class Carried(NamedTuple):
         return criterion._replace(at=self.at) if self.at else criterion
 
 
-class Adjustment(NamedTuple):
+class Adjustment(Named):
     """A correction of a criterion after grading.
 
     With the action "drop" it does not count. With "full", every graded submission gets its points.
@@ -60,12 +61,12 @@ class Criterion(NamedTuple):
     points: Decimal  # 0 if it is dropped
     check: Check
     arguments: Mapping[str, Any]
-    requires: tuple[str, ...] = ()  # ids of criteria above it: it is skipped unless they passed
+    requires: Sequence[str] = ()  # ids of criteria above it: it is skipped unless they passed
     feedback: Mapping[str, str] = {}  # for students who fail it, by the cause; "": for any cause
     about: str = ""  # a heading that consecutive criteria share
     position: int = 0  # in the rubric, from 0
     answer: str = ""  # the model answer; empty unless the rubric was loaded with its answers
-    carried: tuple[Carried, ...] = ()
+    carried: Sequence[Carried] = ()
     at: Mapping[
         str, float
     ] = {}  # the positions of joints in which the robot is examined, degrees or metres; else 0
@@ -94,7 +95,7 @@ class Criterion(NamedTuple):
         return self.adjustment is not None and self.adjustment.action == "full"
 
 
-class _Worth(NamedTuple):
+class _Worth(Named):
     """The maximum of some criteria, and the points of extra credit in addition to it."""
 
     points: Decimal
@@ -130,7 +131,7 @@ def worth(criteria: Iterable[Criterion]) -> _Worth:
     return _Worth(points, bonus)
 
 
-class Part(NamedTuple):
+class Part(Named):
     """A task of the lab.
 
     `needs` is the required input: a urdf, a package, or all files of the submission.
@@ -141,7 +142,7 @@ class Part(NamedTuple):
     needs: str = "urdf"
 
 
-class Evidence(NamedTuple):
+class Evidence(Named):
     """Evidence that the lab asks for.
 
     `names` are labels in the name of its file, in any spelling: "task 1 step 8".
@@ -150,11 +151,11 @@ class Evidence(NamedTuple):
     id: str
     part: str
     title: str
-    names: tuple[str, ...]
+    names: Sequence[str]
 
 
-class Late(NamedTuple):
-    """The late penalty, in percent of the maximum for each day.
+class Late(Named):
+    """The late penalty: points once, and points and percent of the maximum for each day.
 
     A day counts that has begun after the deadline and the grace period.
 
@@ -162,14 +163,16 @@ class Late(NamedTuple):
     grades. `due` has a time zone.
     """
 
-    percent_per_day: Decimal
+    percent_per_day: Decimal = Decimal(0)
+    points_per_day: Decimal = Decimal(0)
+    points: Decimal = Decimal(0)
     due: datetime | None = None
     grace_minutes: Decimal = Decimal(0)
     floor_percent: Decimal = Decimal(0)
 
 
-class Ignored(NamedTuple):
+class Ignored(Named):
     """Mutants of the reference that may lose nothing: patterns of their ids, and why."""
 
-    mutants: tuple[str, ...]
+    mutants: Sequence[str]
     reason: str

@@ -10,6 +10,7 @@ from datetime import datetime
 from decimal import Decimal
 from typing import Any, Literal
 
+from grader.base.grouping import Strings
 from grader.base.toml_file import KeyTable
 from grader.base.toml_types import (
     Constraint,
@@ -28,7 +29,6 @@ MAX_POINTS = 1_000_000
 _MAX_CHOICES = 9  # one key each
 _ARGUMENT = str | bool | int | Decimal
 _DECIMALS = 4  # of points: gradebooks store them as whole numbers of ten-thousandths
-_DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def _is_number(value: Any) -> bool:
@@ -93,7 +93,7 @@ _POINTS = constrained(
         lambda points: not points.scaleb(_DECIMALS) % 1,
     ),
 )
-_PERCENT, _MINUTES = (constrained(_NUMBER, _in_range(0, most)) for most in (100, MAX_POINTS))
+_PERCENT, _AMOUNT = (constrained(_NUMBER, _in_range(0, most)) for most in (100, MAX_POINTS))
 NAMES = simple_type(
     "a list of strings",
     {"type": "array", "items": _TEXT.schema},
@@ -129,7 +129,7 @@ _FILE = constrained(
     ),
 )
 _FOLDERS = constrained(
-    toml_type(tuple[str, ...]),
+    toml_type(Strings),
     Constraint(
         "a list of names of folders, each with a letter or digit and without a slash",
         lambda names: all("/" not in name and any(map(str.isalnum, name)) for name in names),
@@ -285,7 +285,7 @@ EVIDENCE = KeyTable(
         "part": described(_TEXT, "The id of the part that it belongs to."),
         "title": described(_TITLE, "What it should show."),
         "names": described(
-            toml_type(tuple[str, ...]),
+            toml_type(Strings),
             "Labels in the name of its file, in any spelling: task 1 step 8.",
         ),
     },
@@ -296,16 +296,17 @@ LATE = KeyTable(
     {
         "due": described(_TIME, "The deadline, with its offset from UTC."),
         "grace_minutes": described(
-            _MINUTES, "Minutes after the deadline that do not count as late."
+            _AMOUNT, "Minutes after the deadline that do not count as late."
         ),
         "percent_per_day": described(
             _PERCENT, "The penalty for each day begun, in percent of the maximum."
         ),
+        "points_per_day": described(_AMOUNT, "The penalty for each day begun, in points."),
+        "points": described(_AMOUNT, "The penalty for being late at all, in points."),
         "floor_percent": described(
             _PERCENT, "The penalty lowers no grade below this, in percent of the maximum."
         ),
     },
-    required=("percent_per_day",),
 )
 ADJUSTMENT = KeyTable(
     "adjustment",
@@ -356,7 +357,7 @@ RUBRIC = KeyTable(
             "right.",
         ),
         "transforms": described(
-            toml_type(tuple[str, ...]),
+            toml_type(Strings),
             (
                 "Launch files, by their paths in the package, whose static transforms are "
                 "frames of the robot."
@@ -414,8 +415,9 @@ def rubric_schema() -> _Schema:
     It has the arguments of every check, also of installed plug-ins.
     """
     checks = {name: usable_check(name) for name in check_names()}
-    facts = [check.documentation.fact if check is not None else "" for check in checks.values()]
-    schema, criterion = RUBRIC.schema, CRITERION.schema
+    facts = [check.documentation.fact if check else "" for check in checks.values()]
+    schema = RUBRIC.schema
+    criterion = CRITERION.schema
     carried = criterion["properties"]["carried"]
     for row in (criterion, carried, carried["items"]):
         row["properties"]["check"] |= {
@@ -427,11 +429,11 @@ def rubric_schema() -> _Schema:
     # Only the loader knows which of the missing keys and arguments the defaults give.
     criterion["required"] = [key for key in criterion["required"] if key not in DEFAULTS.keys]
     schema["properties"]["criterion"]["items"] = criterion
-    definitions: _Schema = {}
-    arguments_of_checks: _Schema = {}
-    rules: list[_Schema] = []
+    definitions = {}
+    arguments_of_checks = {}
+    rules = []
     for check in checks.values():
-        if check is None:
+        if not check:
             continue
         arguments = {name: _argument_type(check, name) for name in check.parameters}
         definitions[check.name] = KeyTable(check.name, arguments).schema
@@ -444,7 +446,12 @@ def rubric_schema() -> _Schema:
         "additionalProperties": False,
     }
     definitions["arguments"] = {"allOf": rules}
-    return {"$schema": _DRAFT, "title": "grader rubric", **schema, "$defs": definitions}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "grader rubric",
+        **schema,
+        "$defs": definitions,
+    }
 
 
 def _argument_type(check: Check, name: str) -> TomlType:
@@ -454,7 +461,8 @@ def _argument_type(check: Check, name: str) -> TomlType:
     """
     import json  # late: only the schema needs it
 
-    parameter, meaning = check.parameters[name], check.documentation.arguments.get(name, "")
+    parameter = check.parameters[name]
+    meaning = check.documentation.arguments.get(name, "")
     try:
         json.dumps(parameter.default, allow_nan=False)
     except (TypeError, ValueError):  # of a plug-in

@@ -11,10 +11,11 @@ from typing import Any
 from grader.base.errors import RubricError
 from grader.base.names import did_you_mean
 from grader.base.text import printable_path
-from grader.base.toml_file import TomlPath, raise_complaints, read_toml
+from grader.base.toml_file import raise_complaints, read_toml
 from grader.files.reading import read_capped
 from grader.lab.checks.manual import answered
 from grader.lab.rubric.rubric import Rubric, find_rubric, read_rubric
+from grader.lab.rubric.validation import Complaint
 
 
 def load_with_answers(name: str, file: Path | None = None) -> Rubric:
@@ -25,7 +26,7 @@ def load_with_answers(name: str, file: Path | None = None) -> Rubric:
     """
     path = find_rubric(name)
     rubric = read_rubric(read_capped(path, advice=""), path, answers=True)
-    if file is not None:
+    if file:
         return _read_answers(rubric, file)
     if not rubric.answers or missing_answers(rubric):
         return rubric
@@ -74,9 +75,9 @@ def _answers_file(rubric: Rubric) -> Path:
     return rubric.path.parent / rubric.answers
 
 
-def _find_complaints(rubric: Rubric, table: Mapping[str, Any]) -> list[tuple[TomlPath, str]]:
+def _find_complaints(rubric: Rubric, table: Mapping[str, Any]) -> list[Complaint]:
     questions = {row.id: row for row in rubric.criteria if row.check.function is answered}
-    complaints: list[tuple[TomlPath, str]] = []
+    complaints: list[Complaint] = []
     for name, value in table.items():
         if name not in questions:
             guess = (

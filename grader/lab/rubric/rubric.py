@@ -6,13 +6,16 @@ It is loaded strictly: all mistakes are reported at once.
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal
 from functools import cache, cached_property, lru_cache
+from itertools import starmap
 from pathlib import Path
 
 from grader.base.errors import InputError, RubricError
+from grader.base.grouping import Strings, StringsByName
 from grader.base.names import did_you_mean
+from grader.base.records import Record
 from grader.base.reuse import Memory
 from grader.base.text import printable_path, shell_quoted, texts_in
 from grader.base.toml_file import (
@@ -37,7 +40,7 @@ from grader.lab.rubric.criterion import (
     Part,
 )
 from grader.lab.rubric.hint_levels import HintLevel
-from grader.lab.rubric.validation import BoundCarried, BoundCheck, Validation
+from grader.lab.rubric.validation import BoundCarried, BoundCheck, Complaint, Validation
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission
 from grader.ros.known.releases import Release
@@ -46,6 +49,11 @@ from grader.ros.urdf.link_tree import is_selector
 from grader.ros.urdf.reader import Reading, find_xacro, read_urdf
 
 _URDF = "robot.urdf"
+# The keys of a file that are fields of a rubric with the same default.
+_WITH_DEFAULTS = (
+    *("package", "packages", "answers", "folders", "without_urdf", "without_package"),
+    *("hints", "distro", "transforms"),
+)
 RUBRIC_FILE = "rubric.toml"  # in the folder of a shipped rubric
 _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
 
@@ -58,7 +66,9 @@ class ReferenceSolution:
 
     def __init__(self, path: Path, lab: Lab, error: Callable[[str], InputError]) -> None:
         """`error` makes one of what is wrong with the reference, with the line that names it."""
-        self._path, self._lab, self._error = path, lab, error
+        self._path = path
+        self._lab = lab
+        self._error = error
         self._others: dict[tuple[tuple[str, str], ...], ReferenceSolution] = {}
 
     @cached_property
@@ -84,11 +94,11 @@ class ReferenceSolution:
     @cached_property
     def robot(self) -> Configuration:
         """Its robot, with the joints at 0."""
-        if self.reading.robot is None:
+        if not self.reading.robot:
             raise self._error("cannot be compared with: it has no robot")
         return Configuration(self.reading.robot)
 
-    def under(self, arguments: Mapping[str, str]) -> "ReferenceSolution":
+    def under(self, arguments: StringsByName) -> "ReferenceSolution":
         """Return the solution under launch arguments, which is read once."""
         key = tuple(sorted(arguments.items()))
         if key not in self._others:
@@ -97,8 +107,7 @@ class ReferenceSolution:
         return self._others[key]
 
 
-@dataclass(frozen=True, repr=False)  # without slots, for what is computed once
-class Rubric:
+class Rubric(Record):
     """A lab as data: which facts are checked, in which order, and what each is worth.
 
     `load_rubric` reads it from a TOML file, and refuses it with all mistakes at once. Grading runs
@@ -126,14 +135,14 @@ class Rubric:
     evidence: tuple[Evidence, ...] = ()
     late: Late | None = None
     answers: str = ""  # the path of the file with the model answers, if any
-    folders: tuple[str, ...] = ()  # the names of the lab's folder in a repository of several labs
+    folders: Strings = ()  # the names of the lab's folder in a repository of several labs
     # what criteria are with evidence, but no URDF: "manual", or "failed", as where it is empty
     without_urdf: str = ""
     without_package: str = ""  # the same without a package
     hints: HintLevel = "cause"  # the most that hints tell
     ignored: tuple[Ignored, ...] = ()  # mutants that `grader rubric test` lets pass
     distro: Release = "jazzy"  # the release of ROS 2
-    transforms: tuple[str, ...] = ()  # launch files whose static transforms are part of the robot
+    transforms: Strings = ()  # launch files whose static transforms are part of the robot
     solution: ReferenceSolution | None = field(default=None, compare=False)
     links: frozenset[str] = frozenset()  # that criteria name
     # the packages of other people whose programs criteria name
@@ -247,7 +256,7 @@ def find_rubric(name: str) -> Path:
     ):  # a bare word is an id, never a file of the submission
         _refuse_other_path(path)
         return path
-    if path.name.lower().endswith((*ROBOT_ENDINGS, *ARCHIVES)):
+    if path.name.lower().endswith(ROBOT_ENDINGS + ARCHIVES):
         advice = f"`grader grade {shell_quoted(path)}` grades it"
         raise RubricError((f"--rubric takes no submission such as {name!r}; {advice}",))
     guess = did_you_mean(name, shipped) or f"; write ./{printable_path(name)} for a file"
@@ -303,6 +312,8 @@ def _made_rubric(
     evidence = [Evidence(**row) for row in valid.evidence]
     ignored = [Ignored(**row) for row in valid.ignored]
     late = Late(**valid.late) if valid.late is not None else None
+    given = {key: rubric[key] for key in _WITH_DEFAULTS if key in rubric}
+    names = {rubric.get("package", ""), *rubric.get("packages", ())}
     return Rubric(
         id=rubric["id"],
         title=rubric["title"],
@@ -312,23 +323,13 @@ def _made_rubric(
         reference=rubric.get("reference", ""),
         data=data,
         path=path,
-        package=rubric.get("package", ""),
-        packages=rubric.get("packages", ()),
         evidence=tuple(evidence),
         late=late,
-        answers=rubric.get("answers", ""),
-        folders=rubric.get("folders", ()),
-        without_urdf=rubric.get("without_urdf", ""),
-        without_package=rubric.get("without_package", ""),
-        hints=rubric.get("hints", "cause"),
         ignored=tuple(ignored),
-        distro=rubric.get("distro", "jazzy"),
-        transforms=rubric.get("transforms", ()),
         solution=_reference_solution(rubric, path, data),
         links=frozenset(_links_named(valid.bound)),
-        installed=frozenset(_packages_named(valid.bound)).difference(
-            [rubric.get("package", ""), *rubric.get("packages", ())]
-        ),
+        installed=frozenset(_packages_named(valid.bound)).difference(names),
+        **given,
     )
 
 
@@ -341,7 +342,7 @@ def _validate(data: bytes, path: Path) -> Validation:
     return valid
 
 
-def unknown_causes(rubric: Rubric) -> list[tuple[TomlPath, str]]:
+def unknown_causes(rubric: Rubric) -> list[Complaint]:
     """Return the places of `carried` tables that name unknown criteria, and the names.
 
     They are ignored.
@@ -362,7 +363,7 @@ def read_correct_rows(data: bytes, path: Path) -> Rubric | None:
     for part in table.get("part", ()):
         if isinstance(part, dict):
             part.pop("points", None)
-    positions = [*range(len(rows))]
+    positions = list(range(len(rows)))
     while positions:
         table["criterion"] = [rows[position] for position in positions]
         valid = Validation(deepcopy(table))
@@ -397,7 +398,8 @@ def _packages_named(bound: Iterable[BoundCheck]) -> Iterator[str]:
 def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSolution | None:
     if not rubric.get("reference"):
         return None
-    place, package = path.parent / rubric["reference"], rubric.get("package", "")
+    place = path.parent / rubric["reference"]
+    package = rubric.get("package", "")
     lab = Lab(
         rubric.get("urdf", _URDF),
         package,
@@ -408,7 +410,8 @@ def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSo
     )
 
     def error(what: str) -> InputError:
-        line, name = _line_in(data, path, ("reference",)), rubric["id"]
+        line = _line_in(data, path, ("reference",))
+        name = rubric["id"]
         text = f"{printable_path(path)}:{line}: the reference {printable_path(place)} {what}"
         if name in shipped_rubrics() and not place.exists():
             text += f" (`grader rubric copy {name} FOLDER` copies a rubric with its reference)"
@@ -425,7 +428,8 @@ def _make_criterion(
     *,
     answers: bool,
 ) -> Criterion:
-    check, arguments = bound[0], dict(bound[1])
+    check = bound[0]
+    arguments = dict(bound[1])
     # Nothing that lists or passes on a criterion's arguments may see the model answer.
     answer = arguments.pop("answer", "") if check.function is answered else ""
     fields = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}
@@ -437,13 +441,13 @@ def _make_criterion(
     }
     texts = texts_in((arguments, *(given for _, _, given, _ in carried)))
     fields["has_selectors"] = any(map(is_selector, texts))
-    return Criterion(**fields, carried=tuple(Carried(*one) for one in carried))
+    return Criterion(**fields, carried=tuple(starmap(Carried, carried)))
 
 
 def _adjust(criterion: Criterion, adjustments: Mapping[str, Adjustment]) -> Criterion:
     """Return a criterion with its adjustment, if there is one."""
     adjustment = adjustments.get(criterion.id)
-    if adjustment is None:
+    if not adjustment:
         return criterion
     points = Decimal(0) if adjustment.action == "drop" else criterion.points
     return criterion._replace(points=points, adjustment=adjustment)

@@ -22,7 +22,7 @@ def list_files(name: str, answers: Path | None = None) -> list[Path]:
     """
     from grader.lab.rubric.rubric import find_rubric, load_rubric  # late: the default needs none
 
-    files = [answers] if answers is not None else []
+    files = [answers] if answers else []
     with suppress(GraderError):
         file = find_rubric(name)
         files.append(file)
@@ -42,7 +42,7 @@ def load_named(name: str, answers: Path | None = None) -> "Rubric":
 
     Raises RubricError or InputError.
     """
-    if answers is None:
+    if not answers:
         from grader.lab.rubric.rubric import load_rubric
 
         return load_rubric(name)

@@ -6,6 +6,7 @@ from functools import cache
 from typing import Any
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
 from grader.base.text import enumerated, texts_in
 from grader.base.toml_file import KeyTable, TomlPath, TomlRow, TomlRowReader, shorten_value
 from grader.base.toml_types import WrongValue
@@ -20,8 +21,13 @@ _RESERVED = {TOTAL: "final marks", GRADE: "grades", DEADLINE: "deadlines"}  # id
 
 BoundCheck = tuple[Check, TomlRow]
 BoundCarried = tuple[
-    tuple[str, ...], Check, TomlRow, Mapping[str, float]
+    Strings, Check, TomlRow, Mapping[str, float]
 ]  # the possible causes, the fact that counts instead, and its own positions of joints
+
+_PENALTIES = ("percent_per_day", "points_per_day", "points")  # of a late policy, one at least
+_Places = Mapping[str, int]  # of criteria, by id
+_TomlRows = list[TomlRow]
+Complaint = tuple[TomlPath, str]  # where it belongs, and the text
 
 
 class Validation:
@@ -41,8 +47,9 @@ class Validation:
         self.bound: list[BoundCheck] = []
         self.carried: list[list[BoundCarried]] = []
         # Causes in `carried` that are no criteria, such as one that was deleted, with their places.
-        self.unknown_causes: list[tuple[TomlPath, str]] = []
-        self._find_check, self._check_names = cache(find_check), cache(check_names)
+        self.unknown_causes: list[Complaint] = []
+        self._find_check = cache(find_check)
+        self._check_names = cache(check_names)
         self.rubric = self._row((), table, keys.RUBRIC)
         self._defaults: TomlRow = {}
         self._default_arguments: dict[str, TomlRow] = {}
@@ -50,29 +57,33 @@ class Validation:
         self.parts = self._read_rows("part", keys.PART)
         self.criteria = self._read_rows("criterion", keys.CRITERION, self._defaults)
         self.evidence = self._read_rows("evidence", keys.EVIDENCE)
-        self.late: TomlRow | None = None
+        self.late = None
         if "late" in self.rubric:
             self.late = self._row(("late",), self.rubric["late"], keys.LATE)
+            if not any(key in self.rubric["late"] for key in _PENALTIES):
+                self._complain(("late",), f"this late policy has no {' or '.join(_PENALTIES)}")
         self.ignored = self._read_ignored()
-        part_ids, positions = self._find_positions("part"), self._find_positions("criterion")
+        part_ids = self._find_positions("part")
+        positions = self._find_positions("criterion")
         self._check_part(("defaults",), self._defaults, part_ids)
         self._check_criteria(part_ids, positions)
         for index, row in enumerate(self.evidence):
             self._check_part(("evidence", index), row, part_ids)
-        main, packages = self.rubric.get("package", ""), self.rubric.get("packages", ())
+        main = self.rubric.get("package", "")
+        packages = self.rubric.get("packages", ())
         if main and packages and main not in packages:
             self._complain(("package",), f"packages does not list the package {main!r}")
         self.adjusted = self._read_adjustments(positions)
         self._check_totals()
 
     @property
-    def complaints(self) -> list[tuple[TomlPath, str]]:
+    def complaints(self) -> list[Complaint]:
         """The mistakes, each with the path of its key."""
         return self._reader.complaints
 
-    def _check_criteria(self, part_ids: Collection[str], positions: Mapping[str, int]) -> None:
+    def _check_criteria(self, part_ids: Collection[str], positions: _Places) -> None:
         for index, row in enumerate(self.criteria):
-            where: TomlPath = ("criterion", index)
+            where = ("criterion", index)
             if "part" in self.rubric["criterion"][index]:
                 self._check_part(where, row, part_ids)
             self._check_order((*where, "requires"), row, positions)
@@ -111,11 +122,11 @@ class Validation:
 
     def _read_rows(
         self, key: str, table: KeyTable, defaults: Mapping[str, Any] | None = None
-    ) -> list[TomlRow]:
+    ) -> _TomlRows:
         rows = enumerate(self.rubric.get(key, ()))
         return [self._row((key, index), row, table, defaults or {}) for index, row in rows]
 
-    def _read_ignored(self) -> list[TomlRow]:
+    def _read_ignored(self) -> _TomlRows:
         """Return the tables of mutants that may keep full marks."""
         test = self._row(("test",), self.rubric.get("test", {}), keys.TEST)
         return [
@@ -130,13 +141,13 @@ class Validation:
         """
         defaults = self._row(("defaults",), self.rubric.get("defaults", {}), keys.DEFAULTS)
         for name, given in defaults.pop("with", {}).items():
-            where: TomlPath = ("defaults", "with", name)
+            where = ("defaults", "with", name)
             check = self._look_up_check(where, name)
             if not isinstance(given, dict):
                 self._complain(
                     where, f"the arguments of {name} must be a table, not {shorten_value(given)}"
                 )
-            elif check is not None:
+            elif check:
                 unset = dict.fromkeys(
                     given
                 )  # invalid ones are complained of once, not at each criterion
@@ -160,7 +171,7 @@ class Validation:
             )
             self._complain((*where, "args"), message)
         arguments = row.get("with", {})
-        links = [*texts_in([value for key, value in arguments.items() if key in LINK_ARGUMENTS])]
+        links = list(texts_in([value for key, value in arguments.items() if key in LINK_ARGUMENTS]))
         places = [*row.get("at", ()), *links]
         unknown = [text for text in places if text.startswith("@") and not is_selector(text)]
         unknown += [text for text in links if text.startswith(JOINT_OF)]
@@ -206,7 +217,7 @@ class Validation:
             )
             self._complain((*where, "part"), f"there is no part {part!r}{hint}")
 
-    def _check_order(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> None:
+    def _check_order(self, where: TomlPath, row: TomlRow, positions: _Places) -> None:
         """Complain of ids in `requires` that are not those of criteria above it.
 
         Also complain of `carried` from the criterion itself.
@@ -214,7 +225,8 @@ class Validation:
         given: Any = self.rubric  # also of a list with other mistakes in it
         for key in where:
             given = given[key] if isinstance(key, int) else given.get(key, {})
-        index, is_required = int(where[1]), where[-1] == "requires"
+        index = int(where[1])
+        is_required = where[-1] == "requires"
         if not isinstance(given, list):
             return
         for name in given:
@@ -234,7 +246,7 @@ class Validation:
             self._complain(where, message)
 
     def _bind_carried(
-        self, where: TomlPath, row: TomlRow, table: TomlRow, positions: Mapping[str, int]
+        self, where: TomlPath, row: TomlRow, table: TomlRow, positions: _Places
     ) -> BoundCarried | None:
         carried = self._row(where, table, keys.CARRIED)
         self._check_order((*where, "from"), row, positions)
@@ -245,7 +257,7 @@ class Validation:
         # Where all its causes are deleted, nothing is carried.
         return (causes, *bound, carried.get("at", {})) if causes else None
 
-    def _read_adjustments(self, positions: Mapping[str, int]) -> dict[str, TomlRow]:
+    def _read_adjustments(self, positions: _Places) -> dict[str, TomlRow]:
         """Return the adjustments by criterion."""
         for name in (adjusted := self.rubric.get("adjust", {})):
             if name not in positions:
@@ -267,9 +279,10 @@ class Validation:
 
         It is None if there is no such check.
         """
-        name, given = row.get("check"), row.get("with", {})
+        name = row.get("check")
+        given = row.get("with", {})
         check = self._look_up_check((*where, "check"), name) if name is not None else None
-        if check is None:
+        if not check:
             return None
         arguments = self._parse_arguments((*where, "with"), check, given)
         defaults = self._default_arguments.get(check.name, {})
@@ -286,10 +299,10 @@ class Validation:
 
     def _parse_arguments(self, where: TomlPath, check: Check, given: TomlRow) -> TomlRow:
         """Return the valid arguments of a check, converted; complain of the others."""
-        arguments: TomlRow = {}
+        arguments = {}
         for key, value in given.items():
             parameter = check.parameters.get(key)
-            if parameter is None:
+            if not parameter:
                 known = [parameter for parameter in check.parameters if parameter not in given]
                 hint = (
                     self._guess(key, known)
@@ -314,15 +327,15 @@ class Validation:
         except InputError as error:  # in another package
             self._complain(where, str(error))
             return None
-        if check is None:
+        if not check:
             hint = self._guess(name, self._check_names()) or "; `grader rubric checks` lists them"
             self._complain(where, f"there is no check {name!r}{hint}")
         return check
 
-    def _owners_of_totals(self) -> Iterator[tuple[TomlPath, TomlRow, str, list[TomlRow]]]:
+    def _owners_of_totals(self) -> Iterator[tuple[TomlPath, TomlRow, str, _TomlRows]]:
         """Yield the rubric and its parts, each with its place before, its name and its criteria."""
         yield (), self.rubric, "the rubric", self.criteria
-        by_part: dict[str, list[TomlRow]] = {}
+        by_part: dict[str, _TomlRows] = {}
         for row in self.criteria:
             by_part.setdefault(row.get("part", ""), []).append(row)
         for index, part in enumerate(self.parts):

@@ -33,6 +33,11 @@ def content(submission: Submission, path: str) -> bytes | None:
     return submission.whole_tree.read(path, URDF_LIMIT)
 
 
+def text_of(submission: Submission, path: str) -> str:
+    """Return the text of a file of a submission; empty where it has none that can be read."""
+    return (content(submission, path) or b"").decode("utf-8", "surrogateescape")
+
+
 def with_urdf(submission: Submission, files: _Files) -> Submission:
     """Return a submission with only the URDF read again.
 

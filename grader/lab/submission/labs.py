@@ -1,18 +1,19 @@
 """The folder of a lab in a repository that holds several labs."""
 
-import re
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from enum import IntEnum
 from functools import cached_property
 
+from grader.base.names import last_part
+from grader.base.patterns import on_use
 from grader.files.limits import ARCHIVES, PACKAGE_FILES
 from grader.files.tree import parents
 
 MAX_WRAPPERS = 3  # folders around a download
-_WORD = re.compile(r"[^\W\d_]+|\d+")
-_NUMBER = re.compile(r"\d+")
-_NUMBER_BORDER = re.compile(r"(?<=\d) (?=\d)")
+_WORD = on_use(r"[^\W\d_]+|\d+")
+_NUMBER = on_use(r"\d+")
+_NUMBER_BORDER = on_use(r"(?<=\d) (?=\d)")
 _NUMBER_WORDS = {
     word: str(number)
     for number, word in enumerate(
@@ -82,8 +83,8 @@ _PARTS = frozenset(
         "students",
     }
 )
-_ROBOTICS = re.compile("robot|urdf|xacro|gazebo|rviz|webots|turtle|workspace")
-_FINAL = re.compile(r"(?:final|course|term|semester|capstone)projects?|capstone")
+_ROBOTICS = on_use("robot|urdf|xacro|gazebo|rviz|webots|turtle|workspace")
+_FINAL = on_use(r"(?:final|course|term|semester|capstone)projects?|capstone")
 
 
 class Belonging(IntEnum):
@@ -110,8 +111,8 @@ class LabFolders:
             _NUMBER.sub("#", own_lab) for own_lab in self._own if _NUMBER.search(own_lab)
         }
         self._known: dict[str, Belonging] = {}
-        self._packages: set[str] = set()
-        self._folders: set[str] = set()
+        self._packages = set()
+        self._folders = set()
         if not self._own:
             paths = ()
         for path in paths:
@@ -123,7 +124,7 @@ class LabFolders:
         self._above_packages = {above for folder in self._packages for above in parents(folder)}
         every_folder = {above for folder in self._folders for above in (folder, *parents(folder))}
         self._has_exact = any(
-            self.is_lab(folder.rpartition("/")[2]) and not self._is_inside_package(folder)
+            self.is_lab(last_part(folder)) and not self._is_inside_package(folder)
             for folder in every_folder
         )
 
@@ -144,7 +145,7 @@ class LabFolders:
     @cached_property
     def _labs_by_folder(self) -> Mapping[str, Sequence[str]]:
         """The folders and archives that name a lab, by the folder that they are in."""
-        folders: dict[str, list[str]] = defaultdict(list)
+        folders = defaultdict(list)
         for folder in {above for path in self._folders for above in (path, *parents(path))}:
             if folder and self._own_belonging(folder) is not Belonging.NO_LAB:
                 folders[folder.rpartition("/")[0]].append(folder)
@@ -202,7 +203,7 @@ class LabFolders:
     def _own_belonging(self, folder: str) -> Belonging:
         if self._is_inside_package(folder):
             return Belonging.NO_LAB
-        words = lab_words(_without_archive(folder.rpartition("/")[2]))
+        words = lab_words(_without_archive(last_part(folder)))
         name = _join_words(words)
         if name in self._own:
             return Belonging.THIS_LAB
@@ -213,7 +214,7 @@ class LabFolders:
         spans = {
             _join_words(words[i:j]) for i in range(len(words)) for j in range(i + 1, len(words) + 1)
         }
-        if any(_NUMBER.search(span) for span in spans & self._own):
+        if any(map(_NUMBER.search, spans & self._own)):
             return Belonging.NO_LAB if self._has_exact else Belonging.THIS_LAB
         is_other = any(
             _NUMBER.sub("#", span) in self._shapes or _FINAL.fullmatch(span) for span in spans
@@ -221,7 +222,7 @@ class LabFolders:
         return Belonging.OTHER_LAB if is_other else Belonging.NO_LAB
 
 
-def lab_words(name: str) -> tuple[str, ...]:
+def lab_words(name: str) -> Sequence[str]:
     """Return the words and numbers of a name: lab and 6 of Lab_06 or Lab Six."""
     words = _WORD.findall(name[:100].casefold())
     return tuple(

@@ -80,7 +80,7 @@ def open_submission(
     if path != STANDARD_INPUT:
         refuse_other_files(path)
         tree = open_tree(place, partial(_is_lab, lab))
-        if tree is not None:
+        if tree:
             identity = tree.name if place.is_dir() else tree_name(place)
             if opening.reports and place.is_dir():
                 tree = tree.only(
@@ -117,7 +117,7 @@ def open_with_packages(path: str) -> Submission:
         for package in submission.packages
         if package is not main and not is_backup(package.folder)
     ]
-    if main is None or not packages:
+    if not main or not packages:
         return submission
     path_inside = (submission.path or _NO_LAB.urdf).removeprefix(main.path(""))
     names = tuple(dict.fromkeys([main.name, *packages]))

@@ -17,9 +17,10 @@ from grader.ros.package.package import NO_PACKAGE, Package
 DEEPER = "it matches equally well, but is deeper in the folders"
 LATER = "it matches equally well, but comes later in alphabetical order"
 BACKUP = "it is named like a backup"
+_Packages = tuple[Package, ...]
 
 
-def with_preferred(packages: Sequence[Package], preferred: Package) -> tuple[Package, ...]:
+def with_preferred(packages: Sequence[Package], preferred: Package) -> _Packages:
     """Return the packages, renewed, with a table in which `preferred` is the one of its name.
 
     Of several packages of one name, ROS 2 would find the first in the environment; for the files
@@ -31,9 +32,7 @@ def with_preferred(packages: Sequence[Package], preferred: Package) -> tuple[Pac
     return tuple(renewed.values())
 
 
-def why_none(
-    packages: tuple[Package, ...], elsewhere: tuple[Package, ...], name: str
-) -> tuple[str, str]:
+def why_none(packages: _Packages, elsewhere: _Packages, name: str) -> tuple[str, str]:
     """Return why none of these packages has this name, and which there are.
 
     Nor has one `elsewhere`, outside of the lab.
@@ -45,7 +44,7 @@ def why_none(
     there = f"; there {'are' if len(names) > 1 else 'is'} {enumerated(names, MAX_NAMED)}"
     if packages:
         for package in packages:
-            if package.manifest is not None and package.manifest.refusals:
+            if package.manifest and package.manifest.refusals:
                 problem = package.manifest.refusals[0]
                 place = f"line {problem.location.line} of {problem.location.path}"
                 there += f"; {problem.message} ({place})"
@@ -58,7 +57,7 @@ def why_none(
 
 def why_not(graded: Package | None, other: Package, urdf: str) -> str:
     """Return why another package than this one is graded, or none."""
-    if graded is None:
+    if not graded:
         return f"the package {other.name!r} has another name, and does not contain the graded URDF"
     if other.name != graded.name:
         return f"the package {graded.name!r} is graded, not {other.name!r}"

@@ -5,10 +5,11 @@ This is where its lab is searched, and which URDF and package of these files are
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
-from typing import NamedTuple
 
 from grader.base.errors import InputError, NotDecided
-from grader.base.names import folded
+from grader.base.grouping import Strings
+from grader.base.names import folded, last_part
+from grader.base.records import Named
 from grader.base.text import (
     MAX_NAMED,
     enumerated,
@@ -42,17 +43,19 @@ _ELSEWHERE = {
     Belonging.NO_LAB: "it is outside the folder of this lab",
 }
 _Packages = tuple[Package, ...]
+_Robots = Sequence[RobotFile]
+_Others = tuple[OtherCandidate, ...]
 
 
-class UrdfChoice(NamedTuple):
+class UrdfChoice(Named):
     """The path of the URDF that is graded, if there is one.
 
     It also has the other candidates, and which of these fit as well.
     """
 
     path: str | None
-    others: tuple[OtherCandidate, ...]
-    fitting: tuple[str, ...] = ()
+    others: _Others
+    fitting: Strings = ()
     reading: "_ReadCandidate | None" = None  # among several candidates
 
     def read_in(self, surroundings: Surroundings) -> tuple[Read, Budget] | None:
@@ -60,9 +63,10 @@ class UrdfChoice(NamedTuple):
 
         It counts only if it is read alike in these surroundings.
         """
-        if self.reading is None or self.reading.read is None:
+        if not self.reading or self.reading.read is None:
             return None
-        read, before = self.reading.read, self.reading.surroundings
+        read = self.reading.read
+        before = self.reading.surroundings
         is_same = (
             before._replace(budget=surroundings.budget) == surroundings and before.budget.left >= 0
         )
@@ -72,7 +76,7 @@ class UrdfChoice(NamedTuple):
         return read, before.budget
 
 
-class _ReadCandidate(NamedTuple):
+class _ReadCandidate(Named):
     """A candidate as it was read.
 
     Its links are those that the lab names; all if it `is_another` or there are none.
@@ -85,19 +89,19 @@ class _ReadCandidate(NamedTuple):
     read: Read | None = None
 
 
-class _Selection(NamedTuple):
+class _Selection(Named):
     """Where a lab is searched, and what of it is graded."""
 
     choice: UrdfChoice
     tree: Tree  # of the lab's folder, if it has one: documents are in it
     packages: _Packages
     no_package: NoPackage
-    others: tuple[OtherCandidate, ...]  # robots and packages that are not graded
+    others: _Others  # robots and packages that are not graded
     own_folder: str  # of the lab
     other_lab: str  # the folder of another lab that is searched as well
     package: Package | None = None
     lab_packages: Mapping[str, Package] = {}  # by the names that the lab gives
-    notes: tuple[str, ...] = ()  # on the choice
+    notes: Strings = ()  # on the choice
     several: str = ""  # the note that says that several robots fit
 
 
@@ -107,7 +111,7 @@ def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     urdf = selection.choice.path
     packages = selection.packages
     around_urdf = package_around(packages, urdf)
-    if around_urdf is not None and around_urdf.packages[around_urdf.name] is not around_urdf:
+    if around_urdf and around_urdf.packages[around_urdf.name] is not around_urdf:
         packages = with_preferred(packages, around_urdf)
         around_urdf = package_around(packages, urdf)
     if lab.packages:
@@ -115,7 +119,7 @@ def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
         graded = lab_packages.get(lab.package or _main_package(lab_packages, lab, around_urdf))
     else:
         graded = _only_package(packages, lab, around_urdf)
-        lab_packages = {lab.package: graded} if graded is not None else {}
+        lab_packages = {lab.package: graded} if graded else {}
     unused_packages = []
     for package in packages:
         if package not in lab_packages.values():
@@ -150,9 +154,9 @@ def _only_package(packages: _Packages, lab: Lab, around_urdf: Package | None) ->
     This is that around the URDF, unless another one has the name.
     """
     named = best_named(packages, lab.package)
-    if around_urdf is None:
+    if not around_urdf:
         return named
-    if not lab.package or named is None or around_urdf.name == named.name:
+    if not lab.package or not named or around_urdf.name == named.name:
         return around_urdf
     return named
 
@@ -166,7 +170,7 @@ def _several_packages(
     """
     named = packages_named(packages, lab.packages)
     missing = [name for name in lab.packages if name not in named]
-    if missing and around is not None and around not in named.values():
+    if missing and around and around not in named.values():
         named[missing[0]] = around
     return named
 
@@ -178,7 +182,8 @@ def _main_package(packages: Mapping[str, Package], lab: Lab, around: Package | N
 
 def _note_on_folders(selection: _Selection) -> str:
     """Return the note on the folders that were searched, if there is one."""
-    own_folder, urdf = selection.own_folder, selection.choice.path
+    own_folder = selection.own_folder
+    urdf = selection.choice.path
     why = f"{own_folder}, the folder of this lab, has no robot of this lab"
     if selection.other_lab:
         if not own_folder:
@@ -189,7 +194,7 @@ def _note_on_folders(selection: _Selection) -> str:
     return ""
 
 
-class _SearchedPlaces(NamedTuple):
+class _SearchedPlaces(Named):
     """The places of a submission that are searched; of other labs only the one in `other_lab`."""
 
     labs: LabFolders
@@ -244,7 +249,7 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     has_own_folder = any(labs.belonging(path) is Belonging.THIS_LAB for path in tree.files)
     every_package = _packages_in(tree, lab)
 
-    every_robot = find_robots(tree, lab.urdf.rpartition("/")[2], opening.max_size)
+    every_robot = find_robots(tree, last_part(lab.urdf), opening.max_size)
     project_robots = _project_robots(every_robot, labs)
     # Without a folder of the lab, a final project may be all that there is.
     if not has_own_folder and len(project_robots) == len(every_robot):
@@ -253,7 +258,7 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     search = UrdfSearch(tree, lab, labs, opening, every_package)
     choice = search.choose(_robots_in_packages(robots, every_package, lab))
 
-    package_files = [path for path in tree.files if path.rpartition("/")[2] in PACKAGE_FILES]
+    package_files = [path for path in tree.files if last_part(path) in PACKAGE_FILES]
     other_lab = _other_lab(tree, labs, choice.path, () if has_own_folder else package_files)
     places = _SearchedPlaces(labs, other_lab)
     searched_tree = places.only(tree, tuple(Belonging))
@@ -284,10 +289,10 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
 
 def _list_elsewhere(
     labs: LabFolders, project_robots: Collection[str], package_files: Sequence[str]
-) -> tuple[OtherCandidate, ...]:
+) -> _Others:
     """Return the robots and packages outside of the searched places, with the reason."""
     paths = sorted(project_robots)
-    paths += [path for path in package_files if path.rpartition("/")[2] == MANIFEST]
+    paths += [path for path in package_files if last_part(path) == MANIFEST]
     return tuple(
         OtherCandidate(path, _ELSEWHERE[labs.belonging(path)]) for path in paths[:_MAX_ELSEWHERE]
     )
@@ -306,7 +311,7 @@ def _packages_in(tree: Tree, lab: Lab) -> _Packages:
     )
 
 
-def _project_robots(robots: Sequence[RobotFile], labs: LabFolders) -> set[str]:
+def _project_robots(robots: _Robots, labs: LabFolders) -> set[str]:
     """Return the paths of the robots in the folders of final projects."""
     paths = set()
     for robot in robots:
@@ -315,9 +320,7 @@ def _project_robots(robots: Sequence[RobotFile], labs: LabFolders) -> set[str]:
     return paths
 
 
-def _robots_in_packages(
-    robots: Sequence[RobotFile], packages: Sequence[Package], lab: Lab
-) -> Sequence[RobotFile]:
+def _robots_in_packages(robots: _Robots, packages: Sequence[Package], lab: Lab) -> _Robots:
     """Return the robots in the packages that a lab names; all of them if there is none there."""
     inside: set[RobotFile] = set()
     for package in packages_named(packages, lab.packages).values():
@@ -386,7 +389,7 @@ _REASONS = {
 }
 
 
-class _Candidate(NamedTuple):
+class _Candidate(Named):
     """A file that may be the URDF; the best match sorts first."""
 
     is_another: bool  # it has fewer than half of the links that the lab names
@@ -405,7 +408,7 @@ class _Candidate(NamedTuple):
     reading: _ReadCandidate
 
 
-class UrdfSearch(NamedTuple):
+class UrdfSearch(Named):
     """A search for the URDF of a lab among the robots of a submission."""
 
     tree: Tree
@@ -414,7 +417,7 @@ class UrdfSearch(NamedTuple):
     opening: Opening
     packages: _Packages
 
-    def choose(self, robots: Sequence[RobotFile]) -> UrdfChoice:
+    def choose(self, robots: _Robots) -> UrdfChoice:
         """Return which of the robots is graded.
 
         Only if there are several, they and launch files are read.
@@ -439,8 +442,9 @@ class UrdfSearch(NamedTuple):
                 fitting.append(candidate.path)
         return UrdfChoice(best.path, (*others, *generated), tuple(fitting), best.reading)
 
-    def _candidates(self, robots: Sequence[RobotFile]) -> Iterator[_Candidate]:
-        labs, lab = self.labs, self.lab
+    def _candidates(self, robots: _Robots) -> Iterator[_Candidate]:
+        labs = self.labs
+        lab = self.lab
         tiers = {robot.path: _rank_robot(robot, lab.urdf) for robot in robots}
         # What is read first is what may be graded: there may be more than can be read.
         in_order = sorted(
@@ -481,21 +485,23 @@ class UrdfSearch(NamedTuple):
             is_part=is_included and tier > _Tier.OTHER_ENDING,
             is_backup=is_backup(path),
             tier=(tier, not robot.is_urdf),
-            package=len(folders) if around is None else folders.index(around.folder),
+            package=len(folders) if not around else folders.index(around.folder),
             depth=path.count("/"),
             path=path,
-            is_loose=around is None,
+            is_loose=not around,
             reading=reading,
         )
 
-    def _readings(self, robots: Sequence[RobotFile]) -> dict[str, _ReadCandidate]:
+    def _readings(self, robots: _Robots) -> dict[str, _ReadCandidate]:
         """Return each robot as it is read, expanded by xacro, by its path.
 
         Of very many only the first are read.
         """
-        lab, opening = self.lab, self.opening
-        bytes_left, parts_left = _MAX_READ, READING
-        readings: dict[str, _ReadCandidate] = {}
+        lab = self.lab
+        opening = self.opening
+        bytes_left = _MAX_READ
+        parts_left = READING
+        readings = {}
         for robot in robots:
             bytes_left -= min(robot.size, opening.max_size) + _COST_OF_FILE
             around = package_around(self.packages, robot.path)
@@ -523,9 +529,9 @@ class UrdfSearch(NamedTuple):
 
 def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) -> _ReadCandidate:
     robot = read.reading.robot
-    if robot is None and read.reading.undetermined:
+    if not robot and read.reading.undetermined:
         return _ReadCandidate(surroundings, read=read)
-    if robot is None:
+    if not robot:
         return _ReadCandidate(surroundings, bool(lab.links), 0, not name, read)
     is_another = robot.is_another(lab.links)
     counted = len(robot.links) if is_another or not lab.links else robot.known_links(lab.links)

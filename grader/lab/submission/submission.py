@@ -1,11 +1,13 @@
 """A submission: its files, and which URDF and which package of it are graded."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.grouping import Strings, StringsByName
+from grader.base.records import Named
 from grader.base.reuse import Memory
 from grader.base.text import enumerated, was_not_committed
 from grader.files.limits import MAX_FILE_SIZE, ROBOT_ENDINGS
@@ -35,17 +37,18 @@ _WORK_OF_READING = 1_500
 _FILES_OF_READING = 200
 _MAX_COST = 60  # of one reading, for hints
 _NO_FILES = make_tree("", (), ())
-_NO_ARGUMENTS: Mapping[str, str] = {}
+_Arguments = StringsByName  # of launch files
+_NO_ARGUMENTS: _Arguments = {}
 
 
-class Lab(NamedTuple):
+class Lab(Named):
     """What a rubric asks for."""
 
     urdf: str  # its path in the package
     package: str = ""  # the name of the package
-    folders: tuple[str, ...] = ()  # names of the lab's folder
+    folders: Strings = ()  # names of the lab's folder
     links: frozenset[str] = frozenset()  # the names of the robot's links
-    packages: tuple[str, ...] = ()  # the names of all packages, if there are several
+    packages: Strings = ()  # the names of all packages, if there are several
     memory: Memory | None = None  # of its submissions, where several are read
     # the packages of other people whose programs the lab asks for: they are on its machines
     installed: frozenset[str] = frozenset()
@@ -57,19 +60,19 @@ class Lab(NamedTuple):
         return (self.distro,) if self.distro is not None else ()
 
     @property
-    def package_names(self) -> tuple[str, ...]:
+    def package_names(self) -> Strings:
         """The names of its packages."""
         return self.packages or (self.package,)
 
 
-class Opening(NamedTuple):
+class Opening(Named):
     """How a submission is opened."""
 
     max_size: int = URDF_LIMIT  # of a URDF, in bytes
-    arguments: Mapping[str, str] = _NO_ARGUMENTS  # of xacro
+    arguments: _Arguments = _NO_ARGUMENTS  # of xacro
     no_documents: str = ""  # why no document is read, where grading ran out of memory with them
     # the texts of Word and PDF files that were read before, by path
-    converted: Mapping[str, str] = _NO_ARGUMENTS
+    converted: _Arguments = _NO_ARGUMENTS
     reports: frozenset[str] = (
         frozenset()
     )  # real paths of earlier reports, which are not part of a folder
@@ -78,7 +81,7 @@ class Opening(NamedTuple):
 DEFAULTS = Opening()
 
 
-class NoPackage(NamedTuple):
+class NoPackage(Named):
     """Why there is no package, and which there are.
 
     Of several packages, it has the name of the one that is missing.
@@ -92,7 +95,6 @@ class NoPackage(NamedTuple):
 _NO_PACKAGE = NoPackage()
 
 
-@dataclass(frozen=True, eq=False, repr=False)
 class Submission(OpenedWorkspace):
     """The work that a student submitted, with what of it is graded: a URDF, a package, documents.
 
@@ -192,7 +194,7 @@ class Submission(OpenedWorkspace):
     def cost(self) -> int:
         """How much longer reading it takes than reading a short URDF."""
         of_urdf = self.urdf.reading.source.cost if isinstance(self.urdf, Read) else 0
-        of_package = self.package.budget.used if self.package is not None else 0
+        of_package = self.package.budget.used if self.package else 0
         return (
             of_urdf
             + len(self.whole_tree.files) // _FILES_OF_READING
@@ -202,7 +204,7 @@ class Submission(OpenedWorkspace):
     @property
     def is_costly(self) -> bool:
         """Return whether reading it takes so long that no hints are searched."""
-        work = self.package.work.used if self.package is not None else 0
+        work = self.package.work.used if self.package else 0
         is_much = work > _MAX_COST * _WORK_OF_READING
         return self.cost > _MAX_COST or is_much or self.budget.used > self.budget.limit // 10
 
@@ -231,7 +233,7 @@ class Submission(OpenedWorkspace):
         return None
 
     @property
-    def ignored(self) -> tuple[str, ...]:
+    def ignored(self) -> Strings:
         """The files that are not read, and why, in one line each."""
         return tuple(map(str, self.tree.ignored))
 
@@ -240,9 +242,9 @@ class Submission(OpenedWorkspace):
 
         Raises MissingElement without one, NotDecided if an archive is unopened.
         """
-        if self.package is not None:
+        if self.package:
             return self.package
-        self._refuse_unopened("package")
+        self.refuse_unopened("package")
         message, detail, name = self.no_package
         raise MissingElement(
             "package", name, message=message, detail=detail, absent=f"package {name}".rstrip()
@@ -251,9 +253,9 @@ class Submission(OpenedWorkspace):
     def with_package(self, name: str) -> "Submission":
         """Return the submission with the package that the lab gives this name as the graded one."""
         package = self.lab_packages.get(name)
-        if package is not None and package is self.package:
+        if package and package is self.package:
             return self
-        if package is None and self.packages:
+        if not package and self.packages:
             others = enumerated([repr(other.name) for other in self.packages])
             return replace(
                 self,
@@ -269,13 +271,13 @@ class Submission(OpenedWorkspace):
         """
         match self.urdf:
             case Read(reading=reading):
-                if reading.robot is None and reading.undetermined:
+                if not reading.robot and reading.undetermined:
                     raise NotDecided(reading.undetermined)
                 return reading
             case Unreadable(reason=reason):
                 raise NotDecided(reason, "the URDF cannot be read")
-            case Absent(blank=blank):
-                self._refuse_unopened("URDF")
+            case Absent(blank=blank, reason=why):
+                self.refuse_unopened("URDF")
         count = len(self.tree.files)
         if count > 1:
             files = f"none of the {count} files contains a <robot>"
@@ -285,20 +287,18 @@ class Submission(OpenedWorkspace):
             (path for path in self.tree.generated if path.lower().endswith(ROBOT_ENDINGS)), ""
         )
         if blank:
-            files = f"{blank} is empty"
+            files = blank
         detail = f": {files}" if count or blank else ""
         if built:
             detail += was_not_committed(built)
-        raise MissingElement(
-            "URDF", "", message="no URDF was submitted", detail=detail, absent="URDF"
-        )
+        raise MissingElement("URDF", "", message=why, detail=detail, absent="URDF")
 
-    def under(self, arguments: Mapping[str, str]) -> "Submission":
+    def under(self, arguments: _Arguments) -> "Submission":
         """Return the submission under launch arguments.
 
         They apply to its launch files, and to its robot if it is xacro.
         """
-        packages = (*self.packages, *self.neighbours)
+        packages = self.packages + self.neighbours
         changed = self._with_packages({package: package.under(arguments) for package in packages})
         if not isinstance(self.urdf, Read) or not self.urdf.has_xacro:
             return changed
@@ -327,7 +327,7 @@ class Submission(OpenedWorkspace):
             self,
             packages=tuple(map(known.__getitem__, self.packages)),
             neighbours=tuple(map(known.__getitem__, self.neighbours)),
-            package=known.get(self.package, self.package) if self.package is not None else None,
+            package=known.get(self.package, self.package) if self.package else None,
             lab_packages=lab_packages,
             budget=Budget(),
         )
@@ -336,7 +336,7 @@ class Submission(OpenedWorkspace):
         """Return the files around its URDF: its own, or other ones."""
         return Surroundings(
             budget,
-            self.whole_tree if tree is None else tree,
+            tree or self.whole_tree,
             self.package,
             self.packages or self.neighbours,
             self.opening.arguments,
@@ -344,7 +344,8 @@ class Submission(OpenedWorkspace):
             releases=(self.distro,) if self.distro is not None else (),
         )
 
-    def _refuse_unopened(self, missing: str) -> None:
+    def refuse_unopened(self, missing: str) -> None:
+        """Raise NotDecided if an archive that may hold what is missing could not be opened."""
         if self.tree.unopened:
             archives = ", ".join(archive.path for archive in self.tree.unopened[:3])
             raise NotDecided(

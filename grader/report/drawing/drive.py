@@ -28,7 +28,7 @@ def drive_data(picture: Picture) -> dict[str, Any] | None:
     scene = picture.scene
     robot, has_boxes = _with_boxes(scene)
     drive = plan_drive(robot, **picture.driving)
-    if drive is None or drive.standing.base not in scene.poses:
+    if not drive or drive.standing.base not in scene.poses:
         return None
     T_frame_base = scene.poses[drive.standing.base]
     fall = []
@@ -49,7 +49,7 @@ def drive_data(picture: Picture) -> dict[str, Any] | None:
         "mass": rounded(mass, _DIGITS),
         "fall": fall,
         "motion": rounded(motion, _DIGITS),
-        "joints": [*drive.joints],
+        "joints": list(drive.joints),
         "text": f"{capitalised(text)}.",
     }
 
@@ -61,16 +61,16 @@ def _with_boxes(scene: Scene) -> tuple[Configuration, bool]:
     """
     robot = scene.robot.known
     links = [_boxed(link, scene) for link in robot.links]
-    if links == [*robot.links]:
+    if links == list(robot.links):
         return scene.robot, False
     return Configuration(replace(robot, links=tuple(links)), scene.robot.positions), True
 
 
 def _boxed(link: Link, scene: Scene) -> Link:
     """Return a link that rests on what is shown of it, if it rests on a mesh that is shown."""
-    solids: Sequence[Any] = link.collisions or link.visuals
+    solids = link.collisions or link.visuals
     meshes = [visual for visual in link.visuals if isinstance(visual.geometry, Mesh)]
-    boxes = [body for body in scene.bodies if body.link == link.name and body.mesh is not None]
+    boxes = [body for body in scene.bodies if body.link == link.name and body.mesh]
     rests_on_mesh = any(isinstance(solid.geometry, Mesh) for solid in solids)
     if not rests_on_mesh or len(boxes) != len(meshes) or not boxes:
         return link

@@ -23,29 +23,29 @@ def draw_report(report: Report) -> Picture | None:
 
     It is None if there is no robot, or if it can no longer be read.
     """
-    if report.submission.robot is None or not report.submission.robot.links:
+    if not report.submission.robot or not report.submission.robot.links:
         return None
     robot = Configuration(report.submission.robot)
     solution = _reference(report.rubric)
     frame, reference_frame = _frames(report.rubric, robot, solution)
     if frame is None:
         return None
-    wheels = [*dict.fromkeys(_wheels(report.rubric, robot))]
+    wheels = list(dict.fromkeys(_wheels(report.rubric, robot)))
     scene = make_scene(robot, frame, wheels, report.submission.meshes)
     reference = None
-    if solution is not None and reference_frame:
+    if solution and reference_frame:
         reference = make_scene(solution, reference_frame, wheels)
     lost = [entry.result for entry in failures(report) if _is_marked(entry.result)]
     by_link = _by_link(lost, robot, solution)
     callouts = []
     for number, (link, results) in enumerate(by_link.items(), 1):
         point = scene.centre(link)
-        if point is None and reference is not None:
+        if point is None and reference:
             point = reference.centre(link)
-        names = tuple(result.criterion.id for result in results)
+        names = tuple(result.id for result in results)
         callouts.append(Callout(number, link, point, names, write_points(results)))
     driving = _find_driving(report.rubric, robot, wheels)
-    if reference is None:
+    if not reference:
         return Picture(scene, (), (), tuple(callouts), driving)
     outlines, frames = _expected(scene, reference, by_link)
     return Picture(scene, outlines, frames, tuple(callouts), driving)
@@ -53,7 +53,7 @@ def draw_report(report: Report) -> Picture | None:
 
 def _reference(rubric: Rubric) -> Configuration | None:
     """Return the reference solution; None if the hint level does not show it."""
-    if rubric.solution is None or rubric.hints in ("none", "place"):
+    if not rubric.solution or rubric.hints in ("none", "place"):
         return None
     with suppress(InputError):
         return rubric.solution.robot
@@ -64,10 +64,12 @@ def _frames(
     rubric: Rubric, robot: Configuration, solution: Configuration | None
 ) -> tuple[str | None, str | None]:
     """Return the links in whose frames both robots are drawn: the rubric's base, else the roots."""
-    tree, base = robot.main_tree, robot.selected_or_name(rubric.base)
-    if solution is None:
+    tree = robot.main_tree
+    base = robot.selected_or_name(rubric.base)
+    if not solution:
         return (base if base in tree else next(iter(tree), None)), None
-    other_tree, other_base = solution.main_tree, solution.selected_or_name(rubric.base)
+    other_tree = solution.main_tree
+    other_base = solution.selected_or_name(rubric.base)
     if base in tree and other_base in other_tree:
         return base, other_base
     return next(iter(tree), None), next(iter(other_tree), None)
@@ -98,12 +100,11 @@ def _is_marked(result: Result) -> bool:
 
     It failed on the robot, and its points are lost.
     """
-    is_about_robot = result.criterion.check.subject in ("urdf", "robot")
     return (
-        is_about_robot
+        result.criterion.check.is_of_robot
         and result.outcome.status == "failed"
         and result.is_lost
-        and result.manual_mark is None
+        and not result.manual_mark
     )
 
 
@@ -116,7 +117,7 @@ def _by_link(
     """
     results_by_link: dict[str, list[Result]] = {}
     for result in lost:
-        links = [*_links(result.criterion, robot, solution)]
+        links = list(_links(result.criterion, robot, solution))
         results_by_link.setdefault(links[0] if len(links) == 1 else "", []).append(result)
     return results_by_link
 
@@ -129,7 +130,7 @@ def _links(
         (criterion.arguments[key] for key in _SUBJECTS if key in criterion.arguments), None
     )
     for link in dict.fromkeys(robot.selected_or_name(name) for name in texts_in(subject)):
-        if robot.robot.has_link(link) or (solution is not None and solution.robot.has_link(link)):
+        if robot.robot.has_link(link) or (solution and solution.robot.has_link(link)):
             yield link
 
 
@@ -138,7 +139,8 @@ def _expected(
 ) -> tuple[tuple[Body, ...], tuple[Transform, ...]]:
     """Return the bodies and the frames of the reference that the failed criteria are about."""
     links_with_shape = {body.link for body in scene.bodies}
-    shapes, frames = set[str](), set[str]()
+    shapes = set[str]()
+    frames = set[str]()
     for link, results in by_link.items():
         kinds = {result.criterion.check.about.picture for result in results}
         if "outline" in kinds or link not in links_with_shape:

@@ -3,11 +3,15 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from grader.base.grouping import Strings
 from grader.base.transforms import add_up
+
+_Arrow = tuple[str, str]  # the names of two items
 
 _LETTER, _LINE = 7.2, 18  # width and height of a letter, in units of the drawing
 _PADDING, _GAP, _BETWEEN = 12, 14, 70  # inside of a box, below it, and between layers
-_MIN_WIDTH, _MAX_LETTERS = 60, 44
+_MIN_WIDTH = 60
+_MAX_LETTERS = 44
 _MIN_ROW = 400.0  # width of the rows of boxes without an arrow
 _SWEEPS = 6  # over the layers, to order each by the places of its neighbours
 
@@ -16,7 +20,7 @@ class DrawnBox(NamedTuple):
     """A box of the drawing with its lines of text; the place is its upper left corner."""
 
     id: str
-    lines: tuple[str, ...]
+    lines: Strings
     x: float
     y: float
     width: float
@@ -40,7 +44,7 @@ class _GraphLayout(NamedTuple):
     height: float
 
 
-def lay_out(texts: Mapping[str, Sequence[str]], arrows: Sequence[tuple[str, str]]) -> _GraphLayout:
+def lay_out(texts: Mapping[str, Sequence[str]], arrows: Sequence[_Arrow]) -> _GraphLayout:
     """Return the places of items with lines of text, and arrows between them.
 
     Items without an arrow stand in rows below. The result depends on nothing but the arguments.
@@ -54,7 +58,7 @@ def lay_out(texts: Mapping[str, Sequence[str]], arrows: Sequence[tuple[str, str]
     others = [box for name, box in sized.items() if name not in joined]
     height = _place_others(others, boxes, height)
     width = max((box.x + box.width for box in boxes.values()), default=0.0)
-    curves: list[Curve] = []
+    curves = []
     for source, target in arrows:
         curves.append(Curve(source, target, _curve(boxes[source], boxes[target])))
     return _GraphLayout(boxes, tuple(curves), _rounded(width), _rounded(height))
@@ -64,8 +68,8 @@ def _place_layers(
     order: Sequence[Sequence[str]], sized: Mapping[str, DrawnBox]
 ) -> tuple[dict[str, DrawnBox], float]:
     """Return the boxes of each layer above each other, and the height of the highest layer."""
-    boxes: dict[str, DrawnBox] = {}
-    heights: list[float] = []
+    boxes = {}
+    heights = []
     for names in order:
         heights.append(add_up(sized[name].height + _GAP for name in names))
     height = max(heights, default=0.0)
@@ -91,7 +95,7 @@ def _sized(name: str, lines: Sequence[str]) -> DrawnBox:
     return DrawnBox(name, tuple(shown), 0, 0, width, len(shown) * _LINE + _PADDING)
 
 
-def _in_layers(names: Sequence[str], arrows: Sequence[tuple[str, str]]) -> dict[str, int]:
+def _in_layers(names: Sequence[str], arrows: Sequence[_Arrow]) -> dict[str, int]:
     """Return the layer of each item: one more than the last that leads to it.
 
     An arrow that closes a circle counts for nothing.
@@ -112,12 +116,10 @@ def _in_layers(names: Sequence[str], arrows: Sequence[tuple[str, str]]) -> dict[
     return layers
 
 
-def _without_circles(
-    names: Sequence[str], after: Mapping[str, Sequence[str]]
-) -> list[tuple[str, str]]:
+def _without_circles(names: Sequence[str], after: Mapping[str, Sequence[str]]) -> list[_Arrow]:
     """Return the arrows without those that lead back to an item on the way to them."""
-    forward: list[tuple[str, str]] = []
-    state: dict[str, bool] = {}  # whether an item is on the way; absent before it is met
+    forward = []
+    state = {}  # whether an item is on the way; absent before it is met
     for start in names:
         if start in state:
             continue
@@ -137,9 +139,7 @@ def _without_circles(
     return forward
 
 
-def _with_few_crossings(
-    layers: Mapping[str, int], arrows: Sequence[tuple[str, str]]
-) -> list[list[str]]:
+def _with_few_crossings(layers: Mapping[str, int], arrows: Sequence[_Arrow]) -> list[list[str]]:
     """Return the items of each layer, ordered by the middle of their neighbours."""
     order: list[list[str]] = [[] for _ in range(max(layers.values(), default=-1) + 1)]
     for name, layer in layers.items():
@@ -151,7 +151,7 @@ def _with_few_crossings(
     for sweep in range(_SWEEPS):
         places = _places_in(order)
         for names in order if sweep % 2 == 0 else reversed(order):
-            middles: dict[str, float] = {}
+            middles = {}
             for name in names:
                 others = neighbours[name]
                 middles[name] = add_up(places[other] for other in others) / len(others)
@@ -162,7 +162,7 @@ def _with_few_crossings(
 
 def _places_in(order: Sequence[Sequence[str]]) -> dict[str, float]:
     """Return where each item is in its layer, from -0.5 to 0.5."""
-    places: dict[str, float] = {}
+    places = {}
     for names in order:
         for index, name in enumerate(names):
             places[name] = (index + 0.5) / len(names) - 0.5
@@ -172,10 +172,12 @@ def _places_in(order: Sequence[Sequence[str]]) -> dict[str, float]:
 def _place_others(others: Sequence[DrawnBox], boxes: dict[str, DrawnBox], height: float) -> float:
     """Add the boxes of items without an arrow in rows below, and return the height of all."""
     width = max([_MIN_ROW, *(box.x + box.width for box in boxes.values())])
-    x, y = 0.0, height
+    x = 0.0
+    y = height
     for box in others:
         if x > 0 and x + box.width > width:
-            x, y = 0.0, y + box.height + _GAP
+            x = 0.0
+            y = y + box.height + _GAP
         boxes[box.id] = box._replace(x=x, y=y)
         x += box.width + _GAP
         height = y + box.height + _GAP
@@ -184,8 +186,10 @@ def _place_others(others: Sequence[DrawnBox], boxes: dict[str, DrawnBox], height
 
 def _curve(source: DrawnBox, target: DrawnBox) -> str:
     """Return a curve between the sides of two boxes that face each other."""
-    start_x, end_x = source.x + source.width, target.x
-    start_y, end_y = source.y + source.height / 2, target.y + target.height / 2
+    start_x = source.x + source.width
+    end_x = target.x
+    start_y = source.y + source.height / 2
+    end_y = target.y + target.height / 2
     bend = max(30.0, abs(end_x - start_x) / 2)
     numbers = [start_x, start_y, start_x + bend, start_y, end_x - bend, end_y, end_x - 5, end_y]
     words = [f"{_rounded(number):g}" for number in numbers]

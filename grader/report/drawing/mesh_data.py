@@ -56,13 +56,13 @@ class MeshStore:
 
         These are shown with fewer triangles. A mesh without an address is shown as its box.
         """
-        addresses: dict[Mesh, str] = {}
+        addresses = {}
         sentences: dict[str, None] = {}
         room = _MAX_OF_ROBOT
         for body in scene.bodies:
             mesh = body.mesh
-            triangles = meshes.load(mesh) if mesh is not None else ""
-            if mesh is None or isinstance(triangles, str) or mesh in addresses:
+            triangles = meshes.load(mesh) if mesh else ""
+            if not mesh or isinstance(triangles, str) or mesh in addresses:
                 continue
             mirrored = tuple(factor < 0 for factor in mesh.scale)
             most = min(room, _MAX_TRIANGLES, triangles.count)
@@ -80,4 +80,4 @@ class MeshStore:
                 count = f"{packed.triangles:,} of {triangles.count:,} triangles"
                 file = quoted_end(mesh.filename)
                 sentences[f"Shown with fewer triangles: {file}, {count}"] = None
-        return addresses, [*sentences]
+        return addresses, list(sentences)

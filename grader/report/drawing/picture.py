@@ -11,6 +11,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.grouping import Strings
 from grader.base.text import counted, enumerated, quoted, quoted_end
 from grader.base.transforms import Z_AXIS, Transform, Vector
 from grader.ros.api import (
@@ -37,12 +38,10 @@ _MAX_BODIES = 500  # in software, a browser draws more only in seconds
 _MAX_COORDINATE = 1e4  # metres
 _MAX_OMITTED = 4  # links that are not shown
 _MAX_REASONS = 50  # why links are not shown
-_WITHOUT_MATERIAL: _Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
-_OWN_COLOUR: _Rgba = (0.7, 0.7, 0.7, 1.0)  # for the colours in a mesh file, which are not read
-_MESHES, _UNKNOWN = (
-    "mesh files are not opened",
-    "the size or place of a shape is zero, too large or not known",
-)
+_WITHOUT_MATERIAL = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
+_OWN_COLOUR = (0.7, 0.7, 0.7, 1.0)  # for the colours in a mesh file, which are not read
+_MESHES = "mesh files are not opened"
+_UNKNOWN = "the size or place of a shape is zero, too large or not known"
 _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 
 
@@ -79,11 +78,11 @@ class Scene:
     poses: Mapping[str, Transform]  # the T_frame_link of the links that have one
     bodies: tuple[Body, ...]  # the different shapes of these links
     wheels: tuple[Wheel, ...]
-    missing: tuple[str, ...]  # sentences that say what is not shown, and why
-    boxed: tuple[str, ...] = ()  # the links that have boxes in place of meshes
+    missing: Strings  # sentences that say what is not shown, and why
+    boxed: Strings = ()  # the links that have boxes in place of meshes
 
     @property
-    def remarks(self) -> tuple[str, ...]:
+    def remarks(self) -> Strings:
         """Sentences that say what is not shown, or shown as a box."""
         if not self.boxed:
             return self.missing
@@ -98,7 +97,7 @@ class Scene:
         pose = next(
             (body.T_frame_shape for body in self.bodies if body.link == link), self.poses.get(link)
         )
-        return pose.translation if pose is not None else None
+        return pose.translation if pose else None
 
     @property
     def root(self) -> str:
@@ -128,7 +127,7 @@ def make_scene(
     """
     # The links that are not shown, or not wholly, by reason.
     omitted: dict[str, dict[str, None]] = {}
-    poses: dict[str, Transform] = {}
+    poses = {}
     bodies: dict[Body, None] = {}  # each once
     for link in robot.robot.links:
         pose = _pose(robot, link.name, frame)
@@ -140,7 +139,7 @@ def make_scene(
             else:
                 omitted.setdefault(body, {})[link.name] = None
     missing = _list_omitted(omitted)
-    boxed = dict.fromkeys(body.link for body in bodies if body.mesh is not None)
+    boxed = dict.fromkeys(body.link for body in bodies if body.mesh)
     if len(bodies) > _MAX_BODIES:
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
     shown = tuple(bodies)[:_MAX_BODIES]
@@ -151,13 +150,13 @@ def make_scene(
 def _turning_wheels(scene: Scene, links: Iterable[str]) -> tuple[Wheel, ...]:
     """Return the wheels among the links that are meant to roll."""
     turning = (_wheel(scene, link) for link in links)
-    return tuple(wheel for wheel in turning if wheel is not None)
+    return tuple(wheel for wheel in turning if wheel)
 
 
 def _list_omitted(omitted: Mapping[str, Collection[str]]) -> list[str]:
     """Return sentences on the links that are not shown, by reason."""
     sentences = []
-    for why, names in [*omitted.items()][:_MAX_REASONS]:
+    for why, names in list(omitted.items())[:_MAX_REASONS]:
         shown = enumerated([quoted(name) for name in names], _MAX_OMITTED)
         sentences.append(f"Not shown: {shown}: {why}")
     rest = len(omitted) - _MAX_REASONS
@@ -190,29 +189,35 @@ def _bodies(link: Link, pose: Transform | str, meshes: "MeshLoader | None") -> I
 def _body(link: str, visual: Visual, pose: Transform, meshes: "MeshLoader | None") -> Body | str:
     """Return the body of a visual; else why it cannot be drawn."""
     drawn: Shape
-    mesh: Mesh | None = None
+    mesh = None
     place = visual.origin.placed_in()
-    rgba = visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL
+    rgba = visual.material.rgba if visual.material else _WITHOUT_MATERIAL
     match visual.geometry:
         case Mesh() as shown:
-            if meshes is None:
+            if not meshes:
                 return _MESHES
             box = _box_around(shown, meshes)
             if isinstance(box, str):
                 return f"the mesh {quoted_end(shown.filename)} {box}"
             size, centre = box
-            mesh, sizes, drawn = shown, size, Box(size)
+            mesh = shown
+            sizes = size
+            drawn = Box(size)
             place = place @ Transform(translation=centre)
-            if visual.material is None and not shown.filename.lower().endswith(".stl"):
+            if not visual.material and not shown.filename.lower().endswith(".stl"):
                 rgba = _OWN_COLOUR
         case Box(size=(x, y, z)):
-            sizes, drawn = (x, y, z), Box((abs(x), abs(y), abs(z)))
+            sizes = (x, y, z)
+            drawn = Box((abs(x), abs(y), abs(z)))
         case Cylinder(radius=radius, length=length):
-            sizes, drawn = (radius, length, 0.0), Cylinder(abs(radius), abs(length))
+            sizes = (radius, length, 0.0)
+            drawn = Cylinder(abs(radius), abs(length))
         case Capsule(radius=radius, length=length):
-            sizes, drawn = (radius, length, 0.0), Capsule(abs(radius), abs(length))
+            sizes = (radius, length, 0.0)
+            drawn = Capsule(abs(radius), abs(length))
         case Sphere(radius=radius):
-            sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
+            sizes = (radius, 0.0, 0.0)
+            drawn = Sphere(abs(radius))
     if visual.geometry.is_empty or not _is_drawable(sizes) or not _is_drawable(place.translation):
         return _UNKNOWN
     red, green, blue, alpha = map(_channel, rgba)
@@ -227,7 +232,8 @@ def _box_around(mesh: Mesh, meshes: "MeshLoader") -> tuple[Vector, Vector] | str
     loaded = meshes.load(mesh)
     if isinstance(loaded, str):
         return loaded
-    sizes, centres = [], []
+    sizes = []
+    centres = []
     for low, high, factor in zip(*loaded.bounds, mesh.scale, strict=True):
         sizes.append(abs(factor) * (high - low))
         centres.append(factor * (low + high) / 2.0)
@@ -266,7 +272,7 @@ class Callout(NamedTuple):
     link: str  # empty for the whole robot
     # what marks it, in metres in the scene's frame; None if the link has no pose there
     point: Vector | None
-    names: tuple[str, ...]  # the ids of the criteria
+    names: Strings  # the ids of the criteria
     cost: str  # what they are worth in all: 8 points
 
 
@@ -299,6 +305,6 @@ def plain_picture(
 
     It is None without either. `wheels` are the links that drive it, if they are known.
     """
-    if robot is not None and frame is not None:
+    if robot and frame is not None:
         return Picture(make_scene(robot, frame, meshes=meshes), (), (), (), {"wheels": wheels})
     return None

@@ -9,18 +9,21 @@ from collections.abc import Mapping
 from math import inf, isfinite, pi
 from typing import Any
 
+from grader.base.grouping import StringsByName
 from grader.base.transforms import Transform, unit
 from grader.report.drawing.drive import drive_data, rounded
 from grader.report.drawing.picture import Body, Picture, Scene
 from grader.ros.api import Box, Capsule, Configuration, Cylinder, Joint, Mesh, Shape, Sphere
+
+_Data = dict[str, Any]  # for a script
 
 _MAX_LINKS = 500  # in software, a browser moves more only in seconds
 _WITHOUT_LIMITS = {"prismatic": 1.0}  # metres to each side; the other joints turn by half a turn
 
 
 def space_data(
-    picture: Picture, cards: Mapping[str, str], meshes: Mapping[Mesh, str] = {}
-) -> dict[str, Any] | None:
+    picture: Picture, cards: StringsByName, meshes: Mapping[Mesh, str] = {}
+) -> _Data | None:
     """Return the robot of a picture; None if it has too many links.
 
     Poses are 12 numbers, row by row: the rotation and the translation in metres. `cards` are the
@@ -38,9 +41,9 @@ def space_data(
     placed = {joint["child"] for joint in joints if "origin" in joint}
     links = []
     for name, pose in scene.poses.items():
-        link: dict[str, Any] = {"name": name, "shapes": shapes.get(name, [])}
+        link: _Data = {"name": name, "shapes": shapes.get(name, [])}
         if name not in placed:
-            link["pose"] = _rows(pose)
+            link["pose"] = list_rows(pose)
         links.append(link)
     data = {
         "frame": scene.frame,
@@ -53,7 +56,7 @@ def space_data(
     return data if drive is None else {**data, "drive": drive}
 
 
-def _pins(picture: Picture, cards: Mapping[str, str]) -> list[dict[str, Any]]:
+def _pins(picture: Picture, cards: StringsByName) -> list[_Data]:
     """Return the numbers at links, each with the card on the page that it leads to."""
     pins = []
     for callout in picture.callouts:
@@ -66,10 +69,11 @@ def _pins(picture: Picture, cards: Mapping[str, str]) -> list[dict[str, Any]]:
     return pins
 
 
-def without_names(space: Mapping[str, Any]) -> dict[str, Any]:
+def without_names(space: Mapping[str, Any]) -> _Data:
     """Return a robot with numbers in place of the names of links and joints, and without pins."""
     names = {"": ""}
-    joints, links = [], []
+    joints = []
+    links = []
     for number, link in enumerate(space["links"], 1):
         names[link["name"]] = f"link {number}"
         links.append({**link, "name": names[link["name"]]})
@@ -85,8 +89,9 @@ def without_names(space: Mapping[str, Any]) -> dict[str, Any]:
             leader, *motion = joint["mimic"]
             renamed["mimic"] = [numbers.get(leader, ""), *motion]
         joints.append(renamed)
-    frame, root = names.get(space["frame"], ""), names.get(space["root"], "")
-    robot: dict[str, Any] = {
+    frame = names.get(space["frame"], "")
+    root = names.get(space["root"], "")
+    robot: _Data = {
         "frame": frame,
         "root": root,
         "links": links,
@@ -99,8 +104,8 @@ def without_names(space: Mapping[str, Any]) -> dict[str, Any]:
     return robot
 
 
-def _shapes_by_link(scene: Scene, meshes: Mapping[Mesh, str]) -> Mapping[str, list[dict[str, Any]]]:
-    shapes: dict[str, list[dict[str, Any]]] = {}
+def _shapes_by_link(scene: Scene, meshes: Mapping[Mesh, str]) -> Mapping[str, list[_Data]]:
+    shapes: dict[str, list[_Data]] = {}
     for body in scene.bodies:
         T_link_frame = scene.poses[body.link].inverse()
         for part in _scalable_parts(body):
@@ -110,7 +115,8 @@ def _shapes_by_link(scene: Scene, meshes: Mapping[Mesh, str]) -> Mapping[str, li
 
 def _scalable_parts(body: Body) -> list[Body]:
     """Return a body as shapes that scaling makes of a unit shape: a capsule is three."""
-    shape, pose = body.shape, body.T_frame_shape
+    shape = body.shape
+    pose = body.T_frame_shape
     if not isinstance(shape, Capsule):
         return [body]
     half = shape.length / 2.0
@@ -126,44 +132,47 @@ def _scalable_parts(body: Body) -> list[Body]:
     return bodies
 
 
-def _shape(body: Body, T_link_frame: Transform, meshes: Mapping[Mesh, str]) -> dict[str, Any]:
+def _shape(body: Body, T_link_frame: Transform, meshes: Mapping[Mesh, str]) -> _Data:
     """Return a shape in the frame of its link.
 
     Its size is that of the scaled unit shape of the script.
     """
     shape = body.shape
     if isinstance(shape, Box):
-        kind, size = "box", shape.size
+        kind = "box"
+        size = shape.size
     elif isinstance(shape, Cylinder):
-        kind, size = "cylinder", (shape.radius, shape.radius, shape.length)
+        kind = "cylinder"
+        size = (shape.radius, shape.radius, shape.length)
     else:
-        kind, size = "sphere", (shape.radius, shape.radius, shape.radius)
+        kind = "sphere"
+        size = (shape.radius, shape.radius, shape.radius)
     pose = T_link_frame @ body.T_frame_shape
     data = {
         "kind": kind,
         "size": rounded(size),
-        "pose": _rows(pose),
+        "pose": list_rows(pose),
         "rgba": rounded(body.rgba),
     }
-    if body.mesh is not None and body.mesh in meshes:
+    if body.mesh and body.mesh in meshes:
         data["mesh"] = meshes[body.mesh]
     return data
 
 
-def _joint(joint: Joint, robot: Configuration, poses: Mapping[str, Transform]) -> dict[str, Any]:
+def _joint(joint: Joint, robot: Configuration, poses: Mapping[str, Transform]) -> _Data:
     """Return a joint: how it places its child, if both are shown, how it moves, what it mimics."""
-    data: dict[str, Any] = {
+    data: _Data = {
         "name": joint.name,
         "type": joint.type,
         "parent": joint.parent,
         "child": joint.child,
     }
     is_shown = joint.parent in poses and robot.known_parents.get(joint.child) is joint
-    if is_shown and joint.child in poses and joint.origin is not None:
-        data["origin"] = _rows(joint.origin.placed_in())
+    if is_shown and joint.child in poses and joint.origin:
+        data["origin"] = list_rows(joint.origin.placed_in())
     position = robot.positions.get(joint.name)
     mimic = joint.mimic
-    if mimic is not None and position is None and isfinite(mimic.multiplier + mimic.offset):
+    if mimic and position is None and isfinite(mimic.multiplier + mimic.offset):
         data["mimic"] = [mimic.joint, mimic.multiplier, mimic.offset]
     axis = unit(joint.axis) if joint.axis is not None else None
     if joint.has_position and axis is not None:
@@ -178,14 +187,16 @@ def _joint(joint: Joint, robot: Configuration, poses: Mapping[str, Transform]) -
 def _range(joint: Joint, position: float) -> tuple[float, float]:
     """Return the positions (rad or m) that a slider offers: the limits, and where the joint is."""
     reach = _WITHOUT_LIMITS.get(joint.type, pi)
-    lower, upper = -reach, reach
+    lower = -reach
+    upper = reach
     limit = joint.limit
-    if limit is not None and joint.type != "continuous" and -inf < limit.lower <= limit.upper < inf:
-        lower, upper = limit.lower, limit.upper
+    if limit and joint.type != "continuous" and -inf < limit.lower <= limit.upper < inf:
+        lower = limit.lower
+        upper = limit.upper
     return min(lower, position), max(upper, position)
 
 
-def _rows(pose: Transform) -> list[float]:
+def list_rows(pose: Transform) -> list[float]:
     """Return a pose as 12 numbers, row by row."""
     a, b, c, d, e, f, g, h, i = pose.rotation
     x, y, z = pose.translation

@@ -23,11 +23,13 @@ from grader.ros.api import Box, Capsule, Cylinder, Sphere
 
 Still = tuple[tuple[str, str], ...]  # the colour and the path data of each face
 
-WIDTH, HEIGHT = 160, 120
+WIDTH = 160
+HEIGHT = 120
 _MARGIN = 6
 MAX_SIZE = 1_900  # characters
 # The directions to the right, up and to the viewer, as in the first view in 3-D.
-_RIGHT, _UP = (0.7833, 0.6216, 0.0), (-0.2704, 0.3407, 0.9004)
+_RIGHT = (0.7833, 0.6216, 0.0)
+_UP = (-0.2704, 0.3407, 0.9004)
 _NEAR = (0.5597, -0.7053, 0.435)
 _LIGHT = (0.36, -0.48, 0.8)
 _EDGE_ON = 0.02  # of the length of the normal of a face
@@ -38,7 +40,8 @@ def draw_still(scene: Scene) -> Still:
     if not scene.bodies:
         return ()
     panel = _make_panel(scene)
-    left, shown = MAX_SIZE, dict[Body, list[tuple[str, str]]]()
+    left = MAX_SIZE
+    shown = dict[Body, list[tuple[str, str]]]()
     for body in sorted(scene.bodies, key=lambda one: -np.ptp(outline_body(one), axis=0).max()):
         faces = [_face(body, panel, normal, points) for normal, points in _list_faces(body)]
         size = sum(len(fill) + len(data) + 8 for fill, data in faces)
@@ -51,13 +54,13 @@ def draw_still(scene: Scene) -> Still:
 def _from_back_to_front(bodies: Iterable[Body]) -> Iterator[Body]:
     """Yield bodies, each before those that hide it, as far as that is the same for all of it."""
     axes = np.array((_RIGHT, _UP))
-    bounds: dict[Body, tuple[Any, ...]] = {}
+    bounds = {}
     for body in bodies:
         points = outline_body(body)
         places, depths = points @ axes.T, points * np.sign(_NEAR)  # larger is nearer
         extents = [(values.min(axis=0), values.max(axis=0)) for values in (places, depths)]
-        bounds[body] = (*extents[0], *extents[1])
-    hidden: dict[Body, set[Body]] = {}
+        bounds[body] = extents[0] + extents[1]
+    hidden = {}
     for body, own_bounds in bounds.items():
         hidden[body] = {other for other, others in bounds.items() if _hides(own_bounds, others)}
     while hidden:
@@ -81,7 +84,8 @@ def _make_panel(scene: Scene) -> Panel:
     """Return the view in which a robot fills a picture."""
     axes = np.array((_RIGHT, _UP))
     places = np.concatenate([outline_body(body) for body in scene.bodies]) @ axes.T
-    low, high = places.min(axis=0), places.max(axis=0)
+    low = places.min(axis=0)
+    high = places.max(axis=0)
     room = np.array((WIDTH, HEIGHT)) - 2.0 * _MARGIN
     scale = float((room / np.maximum(high - low, 1e-6)).min())
     x, y, z = ((low + high) / 2.0) @ axes
@@ -91,7 +95,8 @@ def _make_panel(scene: Scene) -> Panel:
 
 def _list_faces(body: Body) -> Iterator[tuple[Vector, Any]]:
     """Yield the faces of a body that one sees: the normal of each, and points whose hull it is."""
-    shape, pose = body.shape, body.T_frame_shape
+    shape = body.shape
+    pose = body.T_frame_shape
     rotation = np.reshape(pose.rotation, (3, 3))
     if not isinstance(shape, Box):
         yield _NEAR, outline_body(body)

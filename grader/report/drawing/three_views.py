@@ -13,6 +13,7 @@ from html import escape
 from math import cos, hypot, sin, tau
 from textwrap import wrap
 
+from grader.base.grouping import Strings
 from grader.base.text import enumerated, printable
 from grader.base.transforms import AXES, Z_AXIS, Transform
 from grader.report.drawing.picture import Body, Picture, Wheel
@@ -27,10 +28,14 @@ from grader.report.drawing.views import (
     make_panels,
 )
 
+_Drawn = Iterator[tuple[str, str]]  # looks or signs, each with a path or a meaning
+
 _LEFT, _LINE = 14.0, 15.0  # pixels
 _LETTER_WIDTH = 6.8  # pixels, on average, of a font that is wider than most
 _WIDTH = WIDTH - 2.0 * _LEFT
-_MAX_TITLE, _MAX_TEXT, _MAX_LINES = 200, 1000, 6
+_MAX_TITLE = 200
+_MAX_TEXT = 1000
+_MAX_LINES = 6
 NO_PICTURE = "No picture: no robot can be read."
 _NO_SHAPES = "No visual can be drawn: only frames of links are shown."
 _FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
@@ -75,7 +80,8 @@ _RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what 
 _AROUND = [
     (ring * cos(tau * n / 16), -ring * sin(tau * n / 16)) for ring in _RINGS for n in range(2, 18)
 ]
-_MAX_NAME, _ROW = 60, 18.0
+_MAX_NAME = 60
+_ROW = 18.0
 _MAX_OUTLINES = 1024  # that are kept
 
 
@@ -93,7 +99,8 @@ def drawing_element(
     for panel in panels:
         parts.append(f"<g>{''.join(_view(panel, picture))}</g>")
     parts += _key(picture, panels[0].top)
-    height, callouts = panels[-1].top + panels[-1].height, callout_lines(picture)
+    height = panels[-1].top + panels[-1].height
+    callouts = callout_lines(picture)
     lines = _wrapped_lines(callouts) if legend else []
     if lines:
         parts += _lines_of_text("text", lines, height)
@@ -133,7 +140,8 @@ def callout_lines(picture: Picture) -> list[str]:
 
 def _wrapped(words: str, width: float) -> list[str]:
     """Return a text in lines of a width in pixels; of a long text the first."""
-    text, most = printable(words[:_MAX_TEXT]), int(width / _LETTER_WIDTH)
+    text = printable(words[:_MAX_TEXT])
+    most = int(width / _LETTER_WIDTH)
     return wrap(text, most, max_lines=_MAX_LINES, placeholder=" ...", break_on_hyphens=False)
 
 
@@ -148,7 +156,7 @@ def drawing_file(picture: Picture | None, title: str, words: Iterable[str], reas
     Without a picture, it shows the reason.
     """
     above = _wrapped_lines(filter(None, words))
-    if picture is not None:
+    if picture:
         drawn = drawing_element(picture, title, above=above)
     else:
         above += ["", *_wrapped(reason, _WIDTH)]
@@ -191,7 +199,7 @@ def _view(panel: Panel, picture: Picture) -> Iterator[str]:
     yield from _numbers(panel, picture, places)
 
 
-def _lines(panel: Panel, picture: Picture) -> Iterator[tuple[str, str]]:
+def _lines(panel: Panel, picture: Picture) -> _Drawn:
     """Yield the look and the path of each line over the shapes.
 
     These are the outlines and frames of the reference, the frames of the robot, and the driving
@@ -214,7 +222,7 @@ def _lines(panel: Panel, picture: Picture) -> Iterator[tuple[str, str]]:
 def _ground(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]:
     """Yield the ground where it is seen edge-on and is level."""
     ground = picture.scene.ground
-    if ground is None or abs(panel.direction(ground.rotate(Z_AXIS))[1] + 1.0) > 1e-3:
+    if not ground or abs(panel.direction(ground.rotate(Z_AXIS))[1] + 1.0) > 1e-3:
         return
     y = panel.place(ground.translation)[1]
     if places.take([(panel.left + PANEL / 2.0, y)], (PANEL, 1.0)):
@@ -224,7 +232,7 @@ def _ground(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]
 
 
 @lru_cache(_MAX_OUTLINES)  # in a class many robots have the same parts
-def _outline(panel: Panel, body: Body) -> tuple[str, ...]:
+def _outline(panel: Panel, body: Body) -> Strings:
     """Return the corners of the outline of a body as SVG has them."""
     return tuple(f"{_number(x)} {_number(y)}" for x, y in panel.outline(body))
 
@@ -239,7 +247,7 @@ def _shape(body: Body, outline: Sequence[str]) -> str:
     return f'<polygon {looks} points="{" ".join(outline)}"><title>{name}</title></polygon>'
 
 
-def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[tuple[str, str]]:
+def _axes(panel: Panel, look: str, length: float, pose: Transform) -> _Drawn:
     """Yield the look and the path of each axis of a frame.
 
     Axes that point to the viewer or away are not among them.
@@ -290,7 +298,7 @@ def _key(picture: Picture, top: float) -> Iterator[str]:
         yield f'<g transform="translate({at})">{sign}{_text("faint", (34.0, 4.0), meaning)}</g>'
 
 
-def _signs(picture: Picture) -> Iterator[tuple[str, str]]:
+def _signs(picture: Picture) -> _Drawn:
     """Yield each sign that a drawing has, with its meaning."""
     if any(callout.point is not None for callout in picture.callouts):
         yield _badge((12.0, 0.0), 1), "points lost"

@@ -20,7 +20,8 @@ from grader.ros.api import Box, Capsule, Sphere
 Place = tuple[float, float]
 _Points = Any  # an array of shape (n, 3), or (n, 2) in a view
 
-WIDTH, TITLE = 600.0, 18.0
+WIDTH = 600.0
+TITLE = 18.0
 PANEL = WIDTH / 2.0  # the width of a view
 _MARGIN = 40.0  # around the robot in each view, for labels
 _KEY_HEIGHT = 130.0
@@ -30,7 +31,7 @@ _MAX_FRAMES, _MAX_FRAMES_ALONE = 12, 60  # with shapes, and where none is shown
 _FAR = 2.0  # times the size of the robot: a ground farther away is not in the picture
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
 CIRCLE = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
-CORNERS = np.array([*product((-0.5, 0.5), repeat=3)])
+CORNERS = np.array(list(product((-0.5, 0.5), repeat=3)))
 _CAPS = np.array([(x, y, z) for z in (-0.5, 0.5) for x, y in CIRCLE])
 # Of each view: its title, and the axes of the frame that point to the right, up and to the viewer.
 _TOP = ("top (from +z)", (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -86,7 +87,8 @@ def outline_body(body: Body) -> _Points:
 
     Of a sphere and of the ends of a capsule, they are those that are farthest along the axes.
     """
-    pose, shape = body.T_frame_shape, body.shape
+    pose = body.T_frame_shape
+    shape = body.shape
     if isinstance(shape, Capsule | Sphere):
         around = shape.radius * np.vstack([np.eye(3), -np.eye(3)])
         return np.vstack([np.add(end, around) for end in _ball_centres(body)])
@@ -99,7 +101,8 @@ def outline_body(body: Body) -> _Points:
 
 def _ball_centres(body: Body) -> list[Vector]:
     """Return the centre of a sphere, or those of the two ends of a capsule."""
-    pose, shape = body.T_frame_shape, body.shape
+    pose = body.T_frame_shape
+    shape = body.shape
     if not isinstance(shape, Capsule):
         return [pose.translation]
     half = shape.length / 2.0
@@ -156,14 +159,16 @@ def make_panels(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
 
 def _bounds(picture: Picture) -> tuple[_Points, _Points]:
     """Return the least and the largest coordinates (m) of what a picture shows, in the frame."""
-    points = [outline_body(body) for body in (*picture.scene.bodies, *picture.outlines)]
+    points = [outline_body(body) for body in picture.scene.bodies + picture.outlines]
     shown = [frame.pose for frame in list_frames(picture)]
     origins = [pose.translation for pose in (*shown, *picture.frames)]
     points.append(origins or [(0.0, 0.0, 0.0)])
     every = np.concatenate(points)
-    low, high = every.min(axis=0), every.max(axis=0)
-    if picture.scene.ground is not None:
-        far, height = _FAR * (high - low).max(), picture.scene.ground.translation[2]
+    low = every.min(axis=0)
+    high = every.max(axis=0)
+    if picture.scene.ground:
+        far = _FAR * (high - low).max()
+        height = picture.scene.ground.translation[2]
         if low[2] - far <= height <= high[2] + far:
             low[2], high[2] = min(low[2], height), max(high[2], height)
     return low, high

@@ -1,51 +1,36 @@
 """The page of a graph: the drawing, its nodes with their ends, and the transforms."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader import __version__
 from grader.base.text import counted, cut, printable
 from grader.report.drawing.graph_layout import Curve, DrawnBox, lay_out
-from grader.report.inspection import Inspection, problem_counts
+from grader.report.inspection import Inspection
 from grader.report.pages.inspection_page import problem_card
 from grader.report.pages.shell import Assets, render_page
 from grader.report.pages.viewing import GRAPH_SCRIPT, SOURCES, STYLES, GraphViewing, ProblemCard
-from grader.report.shown_graph import ShownGraph, transform_tree
-from grader.report.writers.graph_diagrams import Diagram, make_diagram
-from grader.workspace.api import GraphEnd, GraphNode, GraphTransform, LaunchGraph
+from grader.report.shown_graph import VERBS, ShownGraph, transform_tree
+from grader.report.writers.graph_diagrams import Diagram, DiagramBox, make_diagram
+from grader.workspace.api import GraphEnd, GraphNode, LaunchGraph
 
-_MAX_DEPTH = 20  # of a frame that is indented
 _MAX_PARAMETERS = 20
 # A page has at most 150 KB: so many boxes, rows of ends, findings and nodes are on it.
-_MAX_DRAWN, _MAX_ROWS, _MAX_FINDINGS, _MAX_NODES = 130, 150, 30, 200
+_MAX_DRAWN = 130
+_MAX_ROWS = 150
+_MAX_FINDINGS = 30
+_MAX_NODES = 200
 # On a page about something else, at most 20 KB are for a graph.
-_MOST_FITTING, _MAX_BYTES = 60, 18_000
+_MOST_FITTING = 60
+_MAX_BYTES = 18_000
 _BYTES_A_BOX, _BYTES_AN_ARROW = 420, 190  # of markup, without names
 _MAX_LETTERS = 120  # of a text about a box, and of a list of names
-_VERBS = {
-    "publisher": "publishes",
-    "subscription": "subscribes",
-    "service": "serves",
-    "client": "calls",
-    "action server": "serves",
-    "action client": "calls",
-}
-
-
-class _Item(NamedTuple):
-    """What is drawn as a box, and how it looks."""
-
-    lines: tuple[str, ...]
-    kind: str  # node, topic, service or action
-    severity: str
-    is_certain: bool
-    about: str  # for a screen reader, and on hover
 
 
 class GraphDrawing(NamedTuple):
     """The boxes and arrows of a page, the latter with a class of the style."""
 
-    boxes: list[tuple[DrawnBox, _Item]]
+    boxes: list[tuple[DrawnBox, DiagramBox, str]]  # with what is said of each
     arrows: list[tuple[Curve, str]]
     width: float
     height: float
@@ -75,33 +60,25 @@ class _NodeCard(NamedTuple):
     problems: list[ProblemCard]
 
 
-class _FrameRow(NamedTuple):
-    """A transform in the tree."""
-
-    indent: str
-    child: str
-    words: str
-
-
 def graph_html(shown: ShownGraph, viewing: GraphViewing | None = None) -> str:
     """Return a graph as an HTML page; that of `grader view` with `viewing`."""
     graph = shown.graph
     counts = [counted(len(graph.nodes), "node"), counted(len(shown.connections), "connection")]
     drawing = _draw(make_diagram(shown))
-    values: dict[str, object] = {
+    values = {
         "version": __version__,
         "title": printable(graph.path),
         "counts": ", ".join(counts),
-        "effect": problem_counts(shown.inspection),
+        "effect": shown.counts,
         "verdict": "passed" if shown.inspection.is_passed else "failed",
         "drawing": drawing,
-        "nodes": [*_cards(shown)],
-        "frames": [*_frames(graph.transforms)],
-        "lists": [*_lists(shown)],
+        "nodes": list(_cards(shown)),
+        "frames": list(transform_tree(graph.transforms)),
+        "lists": list(_lists(shown)),
         "viewing": viewing,
     }
     assets = Assets(styles="text.css student.css graph.css", scripts="graph.js")
-    if viewing is None:
+    if not viewing:
         return render_page("graph.html", values, {}, assets)
     assets = assets._replace(
         styles=f"{assets.styles} {STYLES}",
@@ -130,8 +107,8 @@ def fitting_drawing(graph: LaunchGraph) -> GraphDrawing | None:
 def _estimate_size(drawing: GraphDrawing) -> int:
     """Return about how many bytes of markup a drawing has."""
     size = _BYTES_AN_ARROW * len(drawing.arrows)
-    for box, item in drawing.boxes:
-        size += _BYTES_A_BOX + len(item.about) + sum(map(len, box.lines))
+    for box, _, about in drawing.boxes:
+        size += _BYTES_A_BOX + len(about) + sum(map(len, box.lines))
     return size
 
 
@@ -147,54 +124,38 @@ def _lists(shown: ShownGraph) -> Iterator[tuple[str, list[tuple[str, str]]]]:
 
 
 def _draw(diagram: Diagram, most: int = _MAX_DRAWN) -> GraphDrawing:
-    """Return so many boxes of a diagram with their arrows, and its size."""
-    items = _list_items(diagram, most)
+    """Return so many boxes of a diagram with their arrows, and its size; frames are listed."""
+    boxes = {box.id: box for box in diagram.boxes[:most] if box.kind != "frame"}
     pairs: dict[tuple[str, str], str] = {}
-    for arrow in diagram.arrows:
-        ends = (f"n{arrow.node}", f"t{arrow.name}")
-        if not items.keys() >= {*ends}:
-            continue
-        look = "" if arrow.is_certain else "dashed"
-        if arrow.fault:
-            look = "broken"
-        pairs.setdefault(ends if arrow.is_from_node else ends[::-1], look)
-    layout = lay_out({name: item.lines for name, item in items.items()}, [*pairs])
-    arrows = [(each, pairs[each.source, each.target]) for each in layout.curves]
-    boxes = [(layout.boxes[name], item) for name, item in items.items()]
-    return GraphDrawing(boxes, arrows, layout.width, layout.height)
+    for source, target, look, _ in diagram.arrows:
+        if source in boxes and target in boxes:
+            pairs.setdefault((source, target), look)
+    layout = lay_out({name: box.lines for name, box in boxes.items()}, list(pairs))
+    arrows = []
+    for each in layout.curves:
+        arrows.append((each, pairs[each.source, each.target]))
+    placed = []
+    for box in boxes.values():
+        placed.append((layout.boxes[box.id], box, _about(box)))
+    return GraphDrawing(placed, arrows, layout.width, layout.height)
 
 
-def _list_items(diagram: Diagram, most: int) -> dict[str, _Item]:
-    """Return what is drawn as boxes: the nodes, and as many names as a page holds."""
-    items: dict[str, _Item] = {}
-    for number, node, severity in diagram.nodes[:most]:
-        about = f"node {node.label}, {node.program}"
-        label = (printable(node.label),)
-        items[f"n{number}"] = _Item(
-            label, "node", severity, not node.doubt, cut(about, _MAX_LETTERS)
-        )
-    most_names = max(0, most - len(items))
-    for number, name in enumerate(diagram.names[:most_names]):
-        lines = [printable(name.name)]
-        about = f"{name.kind} {name.name}, type not known"
-        if name.type:
-            lines.append(printable(name.type))
-            about = f"{name.kind} {name.name}, {name.type}"
-        about = cut(about, _MAX_LETTERS)
-        items[f"t{number}"] = _Item(tuple(lines), name.kind, name.severity, True, about)
-    return items
+def _about(box: DiagramBox) -> str:
+    """Return what is said of a box on hover, and to a screen reader."""
+    return cut(f"{box.kind} {box.name}, {box.type or 'type not known'}", _MAX_LETTERS)
 
 
 def _cards(shown: ShownGraph) -> Iterator[_NodeCard]:
     """Yield the nodes with their ends and findings, as many as a page holds."""
-    rows_left, findings_left = _MAX_ROWS, _MAX_FINDINGS
+    rows_left = _MAX_ROWS
+    findings_left = _MAX_FINDINGS
     for number, node in shown.nodes[:_MAX_NODES]:
-        rows = [*_list_rows(shown, number, node)]
+        rows = list(_list_rows(shown, number, node))
         problems = dict.fromkeys(shown.list_findings(number))
         for end in node.ends:
             problems |= dict.fromkeys(shown.findings_at(node, end))
-        findings = [*problems][:findings_left]
-        remarks = [*_remarks_on(shown, number, node)]
+        findings = list(problems)[:findings_left]
+        remarks = list(_remarks_on(shown, number, node))
         hidden = len(rows) - rows_left
         if hidden > 0:
             remarks.append(f"{counted(hidden, 'further end')} (--format json lists all)")
@@ -211,18 +172,12 @@ def _cards(shown: ShownGraph) -> Iterator[_NodeCard]:
         findings_left -= len(findings)
 
 
-def _is_unused(shown: ShownGraph, number: int, node: GraphNode, end: GraphEnd) -> bool:
-    """Return whether a program of another package offers an end that nothing asks for."""
-    is_of_program = end.is_offered and end.location == node.location
-    return is_of_program and not shown.partners(number, end)
-
-
 def _list_rows(shown: ShownGraph, number: int, node: GraphNode) -> Iterator[_EndRow]:
     """Yield the ends of a node, without what it offers and nothing asks for."""
     for end in node.ends:
-        if _is_unused(shown, number, node, end):
+        if shown.is_offered_only(number, end):
             continue
-        others: list[str] = []
+        others = []
         for other, connection in shown.partners(number, end):
             others.append(f"{other.label} (does not connect)" if connection.fault else other.label)
         findings = shown.findings_at(node, end)
@@ -238,7 +193,7 @@ def _remarks_on(shown: ShownGraph, number: int, node: GraphNode) -> Iterator[str
         yield f"may not run: {node.doubt}"
     if node.opens_more:
         yield f"may open more: {node.opens_more}"
-    unused = [end.name for end in node.ends if _is_unused(shown, number, node, end)]
+    unused = [end.name for end in node.ends if shown.is_offered_only(number, end)]
     if unused:
         yield f"nothing here asks for: {', '.join(unused)}"
     if node.parameters:
@@ -247,7 +202,7 @@ def _remarks_on(shown: ShownGraph, number: int, node: GraphNode) -> Iterator[str
 
 
 def _end_row(end: GraphEnd, partners: str, severity: str) -> _EndRow:
-    quality: Mapping[str, object] = {
+    quality = {
         "depth": end.qos.depth,
         "reliability": end.qos.reliability,
         "durability": end.qos.durability,
@@ -257,18 +212,5 @@ def _end_row(end: GraphEnd, partners: str, severity: str) -> _EndRow:
     place = end.location.file_and_line
     remark = ", ".join(words).replace("_", " ")
     return _EndRow(
-        _VERBS[end.kind], end.name, end.type, partners or "nothing known", place, remark, severity
+        VERBS[end.kind], end.name, end.type, partners or "nothing known", place, remark, severity
     )
-
-
-def _frames(transforms: tuple[GraphTransform, ...]) -> Iterator[_FrameRow]:
-    """Yield the frames as a tree, each transform once."""
-    root = ""
-    for depth, each in transform_tree(transforms):
-        if depth == 0 and each.parent != root:
-            root = each.parent
-            yield _FrameRow("", root, "")
-        words = f"  static, {each.by}" if each.is_static else f"  {each.by}"
-        if not each.is_certain:
-            words += " (not certain)"
-        yield _FrameRow("  " * min(depth + 1, _MAX_DEPTH), each.child, words)

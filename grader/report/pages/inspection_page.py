@@ -36,22 +36,22 @@ def inspection_html(inspection: Inspection, viewing: Viewing | None = None) -> s
     With `viewing`, it is that of `grader view`.
     """
     robot = inspection.robot
-    configuration = robot.configuration if robot is not None else None
-    path = robot.path if robot is not None else inspection.path
+    configuration = robot.configuration if robot else None
+    path = robot.path if robot else inspection.path
     lines = [(each.path, f": {robot_line(each)}") for each in inspection.robots]
     values = {
         "version": __version__,
         "title": printable(configuration.robot.name if configuration is not None else path),
         "path": path,
         "effect": effect(inspection),
-        "extent": inspection.extent.words if inspection.extent is not None else "",
+        "extent": inspection.extent.words if inspection.extent else "",
         "verdict": _CLASSES.get(choose_look(inspection), "failed"),
         "problems": [
             problem_card(problem, inspection.source) for problem in inspection.problems[:MAX_LISTED]
         ],
-        "lists": [("Robots", lines)] if robot is None and lines else lists(robot),
+        "lists": [("Robots", lines)] if not robot and lines else lists(robot),
     }
-    if robot is not None:
+    if robot:
         picture = plain_picture(configuration, robot.relative_to, robot.meshes, robot.wheels)
     else:
         picture = plain_picture(configuration, None, None, ())
@@ -63,7 +63,7 @@ def log_cards(answers: "Iterable[LogAnswer]", source_of: SourceOf) -> list[LogCa
     cards = []
     for answer in answers:
         at = answer.location
-        lines = source_lines(at, source_of) if at is not None else ()
+        lines = source_lines(at, source_of) if at else ()
         cards.append(LogCard(log_line(answer), at is not None, lines))
     return cards or [LogCard(NO_FAILURE, is_explained=False)]
 

@@ -28,25 +28,29 @@ def render_robot_page(
     drawn = ""
     space: dict[str, Any] | None = None
     legend: list[Any] = []
-    if picture is not None:
+    if picture:
         drawn = drawing_element(picture, legend=False)
         meshes: Mapping[Mesh, str] = {}
-        if viewing is not None:
+        if viewing:
             picture, meshes = viewing.with_meshes(picture)
         space = space_data(picture, cards, meshes)
+        if viewing and viewing.playback is not None and space is not None:
+            space["playback"] = viewing.playback.data(picture.scene.robot)
         legend = callout_lines(picture)
     views = Markup(drawn)  # noqa: S704  an element, whose text is escaped
     shown = {"picture": picture, "views": views, "legend": legend, "has_space": space is not None}
     data: dict[str, Any] = {"robot": space} if space is not None else {}
-    scripts, rules = assets.scripts, STYLE
+    scripts = assets.scripts
+    rules = STYLE
     styles = f"text.css robot.css student.css {assets.styles}"
-    if viewing is not None:  # the same for each version: the policy of a page stays
-        scripts, styles = f"{scripts} {SPACE_SCRIPTS} {SCRIPT}", f"{styles} {STYLES}"
+    if viewing:  # the same for each version: the policy of a page stays
+        scripts = f"{scripts} {SPACE_SCRIPTS} {SCRIPT}"
+        styles = f"{styles} {STYLES}"
         assets = assets._replace(sources=SOURCES)
         data["view"] = viewing.data
     elif space is not None:
         scripts = f"{scripts} {SPACE_SCRIPTS}"
-    if not drawn and viewing is None:
+    if not drawn and not viewing:
         rules = ""
     assets = assets._replace(scripts=scripts, styles=styles, rules=rules)
     return render_page(template, {**values, **shown, "viewing": viewing}, data, assets)

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from grader.base.patterns import on_use
 from grader.base.text import printable
 
 _FILES = Path(__file__).parent / "files"  # templates, styles and scripts of several pages
@@ -29,10 +30,10 @@ _LITERAL = r"""(?P<literal>
     | `(?:\\. | \$\{(?:[^`{}]|`[^`]*`)*\} | [^`\\])*`
     | (?<=[(,=:!&|?\[]) \s* /(?![*/])(?:\\. | \[(?:\\.|[^\]\\\n])*\] | [^/\[\\\n])+/
 )"""
-_COMMENTS = re.compile(rf"{_LITERAL} | /\*.*?\*/ | //[^\n]*", re.DOTALL | re.VERBOSE)
+_COMMENTS = on_use(rf"{_LITERAL} | /\*.*?\*/ | //[^\n]*", re.DOTALL | re.VERBOSE)
 # White space beside punctuation and operators; a line may end a statement after a bracket, or
 # before one.
-_SPACES = re.compile(
+_SPACES = on_use(
     rf"{_LITERAL} | \s+(?=[)\]}},;?:&|=>*]) | [ ]+(?=[(\[{{])"
     r"| (?<=[{(\[,;=>?:&|*])\s+ | (?<=[)\]}])[ ]+ | (?P<end>\s*\n\s*)"
     r"| (?<![-+])[ ](?=[-+/<%!]=*[ ]) | (?<=[-+/<%])[ ](?![-+/!])",
@@ -40,7 +41,7 @@ _SPACES = re.compile(
 )
 _LITERAL_OF_STYLES = r"""(?P<literal> "(?:\\.|[^"\\])*" | '(?:\\.|[^'\\])*' )"""
 # A colon after white space begins a pseudo-class of any element.
-_SPACES_OF_STYLES = re.compile(
+_SPACES_OF_STYLES = on_use(
     rf"{_LITERAL_OF_STYLES} | /\*.*?\*/ | \s+(?=[{{}},;>]) | (?<=[{{}},;:>])\s+ | (?P<space>\s+)",
     re.DOTALL | re.VERBOSE,
 )

@@ -40,7 +40,7 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
     """
     picture = draw_report(report) if not report.is_bare else None
     numbers = {}  # of the callouts in the picture, by criterion
-    for callout in picture.callouts if picture is not None else ():
+    for callout in picture.callouts if picture else ():
         if callout.point is not None:
             numbers.update(dict.fromkeys(callout.names, callout.number))
     described = report_sections(report)
@@ -49,7 +49,7 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
     cards = {}
     for entry in entries:
         for result in entry.results:
-            cards[result.criterion.id] = entry.id
+            cards[result.id] = entry.id
     head = {
         role: [line.text for line in lines]
         for role, lines in alike(content.head(report, described), lambda line: line.role)
@@ -83,7 +83,7 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
     }
     graph_of, graph = _choose_graph(report)
     values |= {"graph": graph, "graph_of": graph_of}
-    styles = "graph.css" if graph is not None else ""
+    styles = "graph.css" if graph else ""
     assets = Assets(styles=styles, scripts="student.js", sources="img-src data:")
     return render_robot_page("student.html", values, picture, assets, cards, viewing)
 
@@ -119,7 +119,7 @@ def _choose_graph(report: Report) -> tuple[str, GraphDrawing | None]:
     launches = launch_files(report.submission.workspace)
     named = [f"/{criterion.arguments.get('launch')}" for criterion in asking]
     asked = [path for path in launches if f"/{path}".endswith(tuple(named))]
-    path = next(iter([*asked, *launches]), "")
+    path = next(iter(asked + launches), "")
     if not path:
         return "", None
     return path, fitting_drawing(launch_graph(report.submission.workspace, path))

@@ -13,9 +13,11 @@ from grader.report.locations import SourceLine
 from grader.ros.api import Mesh
 
 if TYPE_CHECKING:
+    from grader.report.drawing.playback import Playback
     from grader.ros.api import MeshLoader
 
-SCRIPT, STYLES = "view.js", "view.css"
+SCRIPT = "playback.js view.js"
+STYLES = "view.css"
 GRAPH_SCRIPT = "graph_view.js"
 SOURCES = "img-src data:; connect-src 'self'"
 
@@ -77,6 +79,7 @@ class Viewing:
     meshes: "MeshLoader | None"  # of the robot
     log: Sequence[LogCard] | None = None  # what is said of a log; None without one
     graph: str = ""  # the address of the page of the graph; empty without launch files
+    playback: "Playback | None" = None  # the recording that moves the robot
 
     @property
     def data(self) -> dict[str, Any]:
@@ -95,12 +98,12 @@ class Viewing:
         the triangles of the others.
         """
         scene = picture.scene
-        if self.meshes is None or not scene.boxed:
+        if not self.meshes or not scene.boxed:
             return picture, {}
         addresses, sentences = self.store.pack(scene, self.meshes)
         boxed: dict[str, None] = {}
         for body in scene.bodies:
-            if body.mesh is not None and body.mesh not in addresses:
+            if body.mesh and body.mesh not in addresses:
                 boxed[body.link] = None
         missing = (*scene.missing, *sentences)
         scene = replace(scene, missing=missing, boxed=tuple(boxed))

@@ -30,7 +30,7 @@ def render_github(report: Report, base: Base) -> str:
 
     The score is a notice, then come the findings, most points first.
     """
-    findings = [*_findings(report, base)]
+    findings = list(_findings(report, base))
     lines = [
         command(
             "notice",
@@ -57,15 +57,15 @@ def _findings(report: Report, base: Base) -> Iterator[Annotation]:
     ):
         yield _entry_finding(entry, source_of, base)
     for title, lines in (
-        (sections.unbuilt_title, [*sections.unbuilt_lines]),
-        ("Not found", [*sections.missing]),
+        (sections.unbuilt_title, list(sections.unbuilt_lines)),
+        ("Not found", list(sections.missing)),
     ):
         if lines:
             yield Annotation(title, "note", "\n".join(line.text for line in lines))
     for result in report.results:
         remarks = remarks_on(result) if not is_failure(result) else ()
         if remarks:
-            yield Annotation(result.criterion.id, "note", "\n".join(remarks))
+            yield Annotation(result.id, "note", "\n".join(remarks))
     yield from _problem_findings(report, source_of, base)
 
 
@@ -80,7 +80,8 @@ def _problem_findings(report: Report, source_of: SourceOf, base: Base) -> Iterat
 
 
 def _entry_finding(entry: Entry, source_of: SourceOf, base: Base) -> Annotation:
-    is_mistake, where = bool(entry.lost) or is_failure(entry.result), entry.location
+    is_mistake = bool(entry.lost) or is_failure(entry.result)
+    where = entry.location
     lines = entry.texts(
         "finding", "comment", "hint", "feedback", "expected", "alike", "also", "skipped"
     )
@@ -88,7 +89,8 @@ def _entry_finding(entry: Entry, source_of: SourceOf, base: Base) -> Annotation:
     if entry.result.criterion.bonus:
         lines.append(f"Extra credit: {earned_text(entry.result)}.")
         level = "note"
-    text, place = annotation_text(lines, where, base), annotation_place(where, source_of, base)
+    text = annotation_text(lines, where, base)
+    place = annotation_place(where, source_of, base)
     title = f"{entry.cost}: {entry.names}" if is_mistake else entry.id
     return Annotation(title, level, text, place)
 
@@ -97,8 +99,8 @@ def _overview(report: Report) -> str:
     """Return the lines about the whole submission and the undecided criteria."""
     sections = report_sections(report)
     lines = [line.text for line in head(report, sections)]  # first, because the rest may be cut off
-    pending = ", ".join(result.criterion.id for result in report.results if result.is_open)
+    pending = ", ".join(result.id for result in report.results if result.is_open)
     if pending:
         lines.append(f"Needs manual grading: {pending}")
     lines += [line.text for line in sections.carried]
-    return "\n".join((*lines, *closing_lines(report)))
+    return "\n".join(lines + closing_lines(report))

@@ -74,7 +74,7 @@ def _feedback(result: Result) -> str:
 
 
 def _hints(result: Result) -> list[Hint]:
-    if result.hint is not None:
+    if result.hint:
         return [result.hint]
     return []
 
@@ -158,7 +158,7 @@ def _with_ends(report: Report) -> Report:
     results = []
     for result in report.results:
         at = result.outcome.location
-        if at is not None:
+        if at:
             at = ended(at, source_of)
         results.append(result._replace(outcome=result.outcome._replace(location=at)))
     return report._replace(

@@ -4,39 +4,21 @@ https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
-from grader.base.problems import Severity
-from grader.base.source import Base
+from grader.base.source import Base, SourceOf
 from grader.report.findings import (
     Finding,
-    findings_in_inspection,
     fingerprints,
     message_in_repository,
     place_in_repository,
 )
-from grader.report.inspection import Inspection
 from grader.report.json_data import list_to_json
 
-if TYPE_CHECKING:
-    from grader.lab.grading.report import Report
-
-_SEVERITIES: dict[Severity, str] = {"error": "major", "warning": "minor", "note": "info"}
+_SEVERITIES = {"error": "major", "warning": "minor", "note": "info"}
 
 
-def render_codequality(report: "Report", base: Base) -> str:
-    """Return the findings of a report, with the ids of criteria as names of checks."""
-    from grader.report.mistakes import findings_in_report  # late: only a report has criteria
-
-    return _issues(findings_in_report(report), base)
-
-
-def codequality_inspection(inspection: Inspection) -> str:
-    """Return the findings of an inspection."""
-    return _issues(findings_in_inspection(inspection), inspection.base)
-
-
-def _issues(findings: Sequence[Finding], base: Base) -> str:
+def render_codequality(findings: Sequence[Finding], base: Base, _: SourceOf) -> str:
+    """Return the findings; those of a report have the ids of criteria as names of checks."""
     issues = []
     for finding, fingerprint in zip(findings, fingerprints(findings, base), strict=True):
         path, where = place_in_repository(finding, base)
@@ -48,7 +30,7 @@ def _issues(findings: Sequence[Finding], base: Base) -> str:
             "check_name": finding.rule.id,
             "fingerprint": fingerprint,
             "severity": _SEVERITIES[finding.severity],
-            "location": {"path": path, "lines": {"begin": where.line if where is not None else 1}},
+            "location": {"path": path, "lines": {"begin": where.line if where else 1}},
         }
         issues.append(issue)
     return list_to_json(issues)

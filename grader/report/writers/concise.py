@@ -5,30 +5,14 @@ finding there is no line.
 """
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
-from grader.base.source import Base
+from grader.base.source import Base, SourceOf
 from grader.base.text import printable
-from grader.report.findings import Finding, findings_in_inspection
-from grader.report.inspection import Inspection
-
-if TYPE_CHECKING:
-    from grader.lab.grading.report import Report
+from grader.report.findings import Finding
 
 
-def render_concise(report: "Report", base: Base) -> str:
-    """Return the findings of a report, with the ids of criteria in place of codes."""
-    from grader.report.mistakes import findings_in_report  # late: only a report has criteria
-
-    return _lines(findings_in_report(report), base)
-
-
-def concise_inspection(inspection: Inspection) -> str:
-    """Return the findings of an inspection."""
-    return _lines(findings_in_inspection(inspection), inspection.base)
-
-
-def _lines(findings: Iterable[Finding], base: Base) -> str:
+def render_concise(findings: Iterable[Finding], base: Base, _: SourceOf) -> str:
+    """Return the findings; those of a report have the ids of criteria in place of codes."""
     text = ""
     for finding in findings:
         where = finding.location

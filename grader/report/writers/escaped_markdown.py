@@ -3,18 +3,20 @@
 import re
 from collections.abc import Sequence
 
+from grader.base.patterns import on_use
+
 _HTML = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
-_ACTIVE = re.compile(
+_ACTIVE = on_use(
     r"[\\`*\[\]<>&|~$#]|(?<![^\W_])_|_(?![^\W_])"  # an underscore inside a word is plain text
     # GitHub makes links of bare addresses
     r"|(?<=http):(?=//)|(?<=https):(?=//)|(?<=ftp):(?=//)|(?<=www)\.",
     re.IGNORECASE,
 )
-_OPENING = re.compile(r"^([-+=]|\d+[.)](?= |$))")  # a list, rule or heading at the start of a line
+_OPENING = on_use(r"^([-+=]|\d+[.)](?= |$))")  # a list, rule or heading at the start of a line
 # GitHub looks for mentions and issue numbers after it has rendered Markdown, so escapes do not
 # prevent them.
-MENTION = re.compile(r"@|#(?=\d)")
-_FENCE = re.compile(r"`{3,}")
+MENTION = on_use(r"@|#(?=\d)")
+_FENCE = on_use(r"`{3,}")
 # backticks: GitHub's parser takes no more to start code, and counts those of a block to 255
 _MAX_FENCE = 80
 

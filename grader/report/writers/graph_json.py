@@ -73,7 +73,7 @@ def _json_value(value: Any) -> Any:
     if isinstance(value, float) and not isfinite(value):
         return str(value)
     if isinstance(value, list | tuple):
-        return [*map(_json_value, value)]
+        return list(map(_json_value, value))
     return value
 
 
@@ -115,7 +115,7 @@ _NODE = JsonObject(
         "id": _NUMBER,
         "name": _null_if_empty("node.name"),
         "program": (TEXT, "node.program"),
-        "kind": ({"enum": [*GRAPH_NODE_KINDS]}, "node.kind"),
+        "kind": ({"enum": list(GRAPH_NODE_KINDS)}, "node.kind"),
         "inside": _null_if_empty("node.inside"),
         "certain": (_YES_OR_NO, lambda shown: not shown.node.doubt),
         "doubt": _null_if_empty("node.doubt"),
@@ -128,7 +128,7 @@ _NODE = JsonObject(
 )
 _CONNECTION = JsonObject(
     {
-        "kind": {"enum": [*CONNECTION_KINDS]},
+        "kind": {"enum": list(CONNECTION_KINDS)},
         "name": TEXT,
         "from": (_NUMBER, "from_node"),
         "to": (_NUMBER, "to_node"),
@@ -159,11 +159,22 @@ _MANUAL = JsonObject(
 _ARGUMENT = JsonObject(
     {"name": (TEXT, lambda pair: pair[0]), "value": (TEXT, lambda pair: pair[1])}
 )
+_HEARD = JsonObject(
+    {
+        "name": (TEXT, "topic.name"),
+        "types": (array(TEXT), lambda heard: list(heard.topic.types)),
+        "messages": (_NUMBER, "topic.count"),
+        "rate": (nullable({"type": "number"}), "topic.rate"),
+        "reliability": (nullable(TEXT), lambda heard: heard.topic.qos[0]),
+        "durability": (nullable(TEXT), lambda heard: heard.topic.qos[1]),
+        **each(array(TEXT), "publishers differences"),
+    }
+)
 GRAPH = JsonObject(
     {
         **schema_key("grader/graph/v1"),
         "launch": (TEXT, "graph.path"),
-        "launches": (array(TEXT), lambda shown: [*shown.launches]),
+        "launches": (array(TEXT), lambda shown: list(shown.launches)),
         "arguments": (Many(_ARGUMENT), "graph.arguments"),
         "nodes": (Many(_NODE), _nodes),
         "connections": Many(_CONNECTION),
@@ -175,7 +186,9 @@ GRAPH = JsonObject(
             Many(JsonObject({"reason": TEXT, "location": _PLACE})),
             "graph.unread",
         ),
-    }
+        "recorded": (Many(_HEARD), "heard"),
+    },
+    ("recorded",),
 )
 
 

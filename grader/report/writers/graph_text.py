@@ -7,22 +7,14 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.base.problems import Problem
+from grader.base.source import Location
 from grader.base.text import counted, enumerated, printable
-from grader.report.inspection import problem_counts
-from grader.report.shown_graph import ShownGraph, transform_tree
+from grader.report.shown_graph import VERBS, ShownGraph, transform_tree
+from grader.report.writers.inspection_terminal import describe_topic
 from grader.report.writers.terminal_page import INDENT, SEVERITY_LOOKS, Page
 from grader.ros.api import Qos
-from grader.workspace.api import Connection, EndedProcess, GraphEnd, GraphNode, GraphTransform
+from grader.workspace.api import Connection, GraphEnd, GraphNode, GraphTransform
 
-_VERBS = {
-    "publisher": "publishes",
-    "subscription": "subscribes",
-    "service": "serves",
-    "client": "calls",
-    "action server": "serves action",
-    "action client": "calls action",
-}
-_MAX_PARAMETERS = 6  # of a node that is not the only one
 _MAX_LISTED = 12
 _MAX_INDENT = 40
 _NESTED = 2 * INDENT
@@ -40,10 +32,14 @@ def graph_text(shown: ShownGraph, console: Console) -> None:
         _add_node(page, shown, number, node, doubts)
     if not shown.node:
         _add_manual(page, shown)
-        _add_transforms(page, shown.graph.transforms)
-        _add_processes(page, "Programs that end, or are no nodes", shown.graph.processes)
-        _add_processes(page, "Not started under these arguments", shown.graph.not_started)
-        _add_unread(page, shown)
+        _add_heard(page, shown)
+        _add_transforms(page, shown.transforms)
+        graph = shown.graph
+        ended = [(each.program, each.location) for each in graph.processes]
+        _add_places(page, "Programs that end, or are no nodes", ended)
+        not_started = [(each.program, each.location) for each in graph.not_started]
+        _add_places(page, "Not started under these arguments", not_started)
+        _add_places(page, "What may start more", graph.unread)
         _add_launches(page, shown)
     page.print()
 
@@ -51,18 +47,21 @@ def graph_text(shown: ShownGraph, console: Console) -> None:
 def _head(shown: ShownGraph) -> Text:
     """Return how many nodes and connections there are, and what an inspection finds."""
     graph = shown.graph
+    broken = sum(bool(each.fault) for each in shown.connections)
     counts = [
         counted(len(graph.nodes), "node"),
-        counted(len(shown.connections), "connection"),
+        counted(len(shown.connections) - broken, "connection"),
         counted(len(graph.transforms), "transform"),
     ]
+    if broken:
+        counts.insert(2, f"{counted(broken, 'pair')} not connected")
     style = "green" if shown.inspection.is_passed else "bold red"
     if graph.unread:
         counts.append(f"read in part ({_unread_lines(shown)} not evaluated)")
     return Text.assemble(
         (printable(graph.path), "bold"),
         f": {', '.join(counts)}; ",
-        (problem_counts(shown.inspection), style),
+        (shown.counts, style),
     )
 
 
@@ -104,22 +103,35 @@ def _add_node(
     _add_findings(page, shown.list_findings(number))
     quiet: dict[str, list[str]] = {}
     for end in node.ends:
-        partners = shown.partners(number, end)
         findings = shown.findings_at(node, end)
         # A known program offers it whether it is used or not.
-        is_quiet = end.is_offered and end.location == node.location and not end.doubt
-        if is_quiet and not partners and not findings:
-            quiet.setdefault(_VERBS[end.kind], []).append(printable(end.name))
+        if shown.is_offered_only(number, end) and not (end.doubt or findings):
+            quiet.setdefault(VERBS[end.kind], []).append(printable(end.name))
             continue
+        partners = shown.partners(number, end)
         line = _end_line(shown, end, partners, doubts.get(end.doubt, ""))
         if end.location != node.location:
             line.append(f"  {printable(end.location.file_and_line)}", "dim")
         page.inset(line, indent=_NESTED, head=Text(" " * INDENT))
         _add_findings(page, findings)
+    _add_details(page, shown, node, quiet)
+
+
+def _add_details(
+    page: Page, shown: ShownGraph, node: GraphNode, quiet: Mapping[str, list[str]]
+) -> None:
+    """Add what a node offers and nothing asks for, by verbs, and its parameters.
+
+    Services and parameters are there if the whole is asked for.
+    """
+    is_whole = shown.verbose or shown.node
     for verb, names in quiet.items():
-        listed = enumerated(names, _MAX_LISTED)
-        page.inset(f"{verb}, and nothing here asks for: {listed}", "dim", _NESTED, Text("  "))
-    _add_parameters(page, node, most=None if shown.node else _MAX_PARAMETERS)
+        if is_whole or verb == VERBS["publisher"]:
+            listed = enumerated(names, _MAX_LISTED)
+            page.inset(f"{verb}, and nothing here asks for: {listed}", "dim", _NESTED, Text("  "))
+    values = [f"{printable(each.name)} = {_value(each.value)}" for each in node.parameters]
+    if values and is_whole:
+        page.inset(f"parameters: {enumerated(values)}", "dim", _NESTED, Text("  "))
 
 
 def _end_line(
@@ -132,7 +144,7 @@ def _end_line(
 
     `doubt` stands for a reason that is explained above.
     """
-    line = Text(f"{_VERBS[end.kind]} ")
+    line = Text(f"{VERBS[end.kind]} ")
     line.append(printable(end.name), "bold" if not end.doubt else "")
     details = [printable(end.type) or "type not known", *_quality(end.qos)]
     line.append(f" [{', '.join(details)}]", "dim")
@@ -173,12 +185,6 @@ def _add_findings(page: Page, problems: Sequence[Problem]) -> None:
         page.inset(f"{problem.label} {printable(problem.message)} ({place})", "", _NESTED, head)
 
 
-def _add_parameters(page: Page, node: GraphNode, most: int | None) -> None:
-    values = [f"{printable(each.name)} = {_value(each.value)}" for each in node.parameters]
-    if values:
-        page.inset(f"parameters: {enumerated(values, most)}", "dim", _NESTED, Text("  "))
-
-
 def _value(value: object) -> str:
     text = printable(str(value).lower() if isinstance(value, bool) else str(value))
     return text if len(text) <= _MAX_INDENT else f"{text[:_MAX_INDENT]}..."
@@ -192,36 +198,33 @@ def _add_manual(page: Page, shown: ShownGraph) -> None:
         page.inset(f"{printable(end.name)} {verb}: {enumerated(programs, _MAX_LISTED, 'or')}")
 
 
+def _add_heard(page: Page, shown: ShownGraph) -> None:
+    """Add what a recording has of each topic, and how it differs."""
+    if shown.heard:
+        page.title("Recorded")
+    for topic, publishers, differences in shown.heard:
+        details = ", ".join([describe_topic(topic), *_quality(Qos(None, *topic.qos))])
+        arrow = f" <- {enumerated(publishers, _MAX_LISTED)}" if publishers else ""
+        line = f"{printable(topic.name)} [{details}]{printable(arrow)}"
+        page.inset(Text.assemble(line, (f" {'; '.join(differences)}".rstrip(), "red")))
+
+
 def _add_transforms(page: Page, transforms: Sequence[GraphTransform]) -> None:
     """Add the transforms as a tree."""
     if transforms:
         page.title("Transforms")
-    root = ""
-    for depth, each in transform_tree(transforms):
-        if depth == 0 and each.parent != root:
-            root = each.parent
-            page.inset(printable(root))
-        words = f"  {'static, ' if each.is_static else ''}{printable(each.by)}"
-        if not each.is_certain:
-            words += " (not certain)"
-        indent = INDENT + min(INDENT * (depth + 1), _MAX_INDENT)
-        page.inset(Text.assemble(printable(each.child), (words, "dim")), indent=indent)
+    for depth, frame, words in transform_tree(transforms):
+        line = Text(printable(frame)).append(f"  {printable(words)}".rstrip(), "dim")
+        page.inset(line, indent=INDENT + min(INDENT * depth, _MAX_INDENT))
 
 
-def _add_processes(page: Page, title: str, processes: Sequence[EndedProcess]) -> None:
-    if processes:
+def _add_places(page: Page, title: str, rows: Sequence[tuple[str, Location]]) -> None:
+    """Add texts, each with its place."""
+    if rows:
         page.title(title)
-    for each in processes:
-        place = printable(each.location.file_and_line)
-        page.inset(Text.assemble(printable(each.program), (f"  {place}", "dim")))
-
-
-def _add_unread(page: Page, shown: ShownGraph) -> None:
-    if shown.graph.unread:
-        page.title("What may start more")
-    for each in shown.graph.unread:
-        place = printable(each.location.file_and_line)
-        page.inset(Text.assemble(printable(each.reason), (f"  {place}", "dim")))
+    for text, at in rows:
+        place = printable(at.file_and_line)
+        page.inset(Text.assemble(printable(text), (f"  {place}", "dim")))
 
 
 def _add_launches(page: Page, shown: ShownGraph) -> None:

@@ -1,5 +1,7 @@
 """An inspection as annotations of its files for GitHub."""
 
+from grader.base.problems import Severity
+from grader.base.source import Location
 from grader.base.text import printable
 from grader.report.inspection import Inspection, effect
 from grader.report.writers.workflow_commands import (
@@ -14,9 +16,14 @@ from grader.report.writers.workflow_commands import (
 def inspection_github(inspection: Inspection) -> str:
     """Return the annotations of an inspection.
 
-    What ROS 2 does is a notice, then come its problems, errors first.
+    What ROS 2 does is a notice. Robots that cannot be read follow, then its problems, errors first.
     """
-    problems = [
+    annotations = list[Annotation]()
+    for robot in inspection.unread:
+        place = annotation_place(Location(robot.path, 1, 1), inspection.source, inspection.base)
+        level: Severity = "error" if inspection.has_no_readable_robot else "warning"
+        annotations.append(Annotation("not read", level, printable(robot.reason), place))
+    annotations += [
         Annotation(
             problem.label,
             problem.severity,
@@ -26,4 +33,4 @@ def inspection_github(inspection: Inspection) -> str:
         for problem in inspection.problems
     ]
     first = command("notice", {}, printable(inspection.path), effect(inspection))
-    return "".join([first, *limited_annotations(problems, 1)])
+    return "".join([first, *limited_annotations(annotations, 1)])

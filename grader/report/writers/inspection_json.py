@@ -83,12 +83,22 @@ _EXTENT = JsonObject(
 _LOG_ANSWER = JsonObject(
     {
         "line": COUNT,
-        **each(TEXT, "text message"),
+        **each(TEXT, "text message relation"),
         "output": (nullable(TEXT), lambda answer: answer.output or None),
         "code": (nullable(TEXT), lambda answer: answer.code or None),
         "location": Maybe(LOCATION),
     }
 )
+_TOPIC = JsonObject(
+    {
+        "name": TEXT,
+        "types": (array(TEXT), lambda topic: list(topic.types)),
+        "messages": (TOTAL, "count"),
+        "rate": nullable(NUMBER),
+        "recorder_rate": (nullable(NUMBER), lambda topic: topic.recorder_rate or topic.rate),
+    }
+)
+_RECORDING = JsonObject({"path": TEXT, **each(array(TEXT), "facts faults"), "topics": Many(_TOPIC)})
 INSPECTION = JsonObject(
     {
         **schema_key("grader/inspect/v2"),
@@ -102,8 +112,9 @@ INSPECTION = JsonObject(
             lambda robot: robot.extent.stated.places if robot.extent else (),
         ),
         "log": (Many(_LOG_ANSWER), lambda inspection: inspection.log or ()),
+        "recordings": Many(_RECORDING),
     },
-    ("log",),
+    ("log", "recordings"),
 )
 
 
@@ -125,7 +136,7 @@ def _with_ends(inspection: Inspection) -> Inspection:
     log = []
     for answer in inspection.log or ():
         at = answer.location
-        log.append(answer if at is None else answer._replace(location=ended(at, source_of)))
+        log.append(answer if not at else answer._replace(location=ended(at, source_of)))
     return replace(
         inspection, robots=tuple(robots), package_problems=of_packages, log=tuple(log) or None
     )

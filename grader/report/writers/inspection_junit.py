@@ -27,10 +27,10 @@ def inspection_junit(inspection: Inspection) -> str:
     top = etree.Element("testsuites", {"name": title, **_counts(findings, 1)})
     first = etree.SubElement(top, "testsuite", {"name": "grader inspect", **_counts([], 1)})
     case = etree.SubElement(first, "testcase", name=title, classname="grader.inspect")
-    if inspection.extent is not None:
+    if inspection.extent:
         etree.SubElement(case, "system-out").text = f"{printable(inspection.extent.words)}\n"
     for path, of_file in groupby(findings, key=lambda finding: finding.location.path):
-        some = [*of_file]
+        some = list(of_file)
         attributes = {"name": printable(path), **_counts(some)}
         suite = etree.SubElement(top, "testsuite", attributes)
         for finding in some:
@@ -54,7 +54,7 @@ def _add_case(suite: Any, finding: Finding, inspection: Inspection) -> None:
     message = message_in_repository(finding, inspection.base)
     name = f"{finding.rule.label} {message}"
     case = etree.SubElement(suite, "testcase", name=name, classname=f"grader.{finding.rule.id}")
-    if where is not None:
+    if where:
         case.set("file", path)
         case.set("line", str(where.line))
     attributes = {"type": finding.severity, "message": message}

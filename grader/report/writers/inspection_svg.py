@@ -12,16 +12,17 @@ def inspection_svg(inspection: Inspection) -> str:
 
     Its joints are at the given positions.
     """
-    title, words = inspection.path, f"{inspection.path}: {effect(inspection)}"
+    title = inspection.path
+    words = f"{inspection.path}: {effect(inspection)}"
     reason = NO_PICTURE if not inspection.robots else _SEVERAL
     robot = inspection.robot
-    if robot is None:
+    if not robot:
         return drawing_file(None, title, (words,), reason)
     words = f"{robot.path}: {effect(inspection)}"
     configuration = robot.configuration
-    if configuration is not None and configuration.positions:
+    if configuration and configuration.positions:
         positions = configuration.positions.items()
         words += f"; {', '.join(f'{joint} = {position}' for joint, position in positions)}"
-    title = (configuration.robot.name if configuration is not None else "") or robot.path
+    title = (configuration.robot.name if configuration else "") or robot.path
     picture = plain_picture(configuration, robot.relative_to, robot.meshes)
     return drawing_file(picture, title, (words,), NO_PICTURE)

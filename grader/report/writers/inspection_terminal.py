@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from math import inf
 from os.path import commonprefix
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.text import Text
@@ -35,6 +36,9 @@ from grader.report.writers.terminal_page import (
     shortened,
 )
 
+if TYPE_CHECKING:
+    from grader.ros.api import RecordedTopic
+
 _SCREEN = 40  # rows, in which each error is
 _MAX_CAUSES = 35  # errors that have a row of their own
 _MAX_EXCERPTS = 10
@@ -51,11 +55,14 @@ def inspection_terminal(inspection: Inspection, console: Console, *, verbose: bo
     page.inset(_head(inspection), indent=0)
     for answer in _log_lines(inspection):
         page.inset(answer)
+    if inspection.log is not None and not verbose:
+        _print_others(page, inspection)
+        return
     remarks = [block(console, Text(remark, "dim"), 0) for remark in _remarks_on(inspection)]
     problems = _ProblemRows(inspection, console, verbose=verbose)
     # The title of problems, its empty row, that above the remarks, and the last row of problems.
     taken = page.height + sum(map(count_rows, remarks)) + problems.height + 4
-    robots = [*_robot_rows(inspection, console)]
+    robots = list(_robot_rows(inspection, console))
     taken += sum(map(count_rows, robots[:_LEAST_ROBOTS]))
     room = _RowsLeft(inf if verbose else _SCREEN - taken)
     problems.spell_out(room)
@@ -67,7 +74,21 @@ def inspection_terminal(inspection: Inspection, console: Console, *, verbose: bo
         page.leave_row()
     page.rows.extend(remarks)
     page.rows.extend(robots)
+    page.rows.extend(_recording_rows(inspection, console))
     page.rows.extend(_whole_robots(inspection, console, room, verbose=verbose))
+    page.print()
+
+
+def _print_others(page: Page, inspection: Inspection) -> None:
+    """Print below what explains a log how many other problems there are, so that none is taken."""
+    said = {(answer.location, answer.message) for answer in inspection.log or ()}
+    others = [each for each in inspection.problems if (each.location, each.message) not in said]
+    if others:
+        page.title("Problems")
+        page.inset(f"{counted(len(others), 'other problem')}: without --log (or with --verbose)")
+        page.leave_row()
+    for remark in _remarks_on(inspection):
+        page.inset(Text(remark, "dim"), indent=0)
     page.print()
 
 
@@ -75,8 +96,9 @@ def _head(inspection: Inspection) -> Text:
     """Return what ROS 2 does with a robot on its own, else how many problems there are."""
     style = _STYLES[choose_look(inspection)]
     robot = inspection.robot
-    if inspection.extent is None and robot is not None:
-        path, name = printable(robot.path), f", {printable(robot.name)}"
+    if not inspection.extent and robot:
+        path = printable(robot.path)
+        name = f", {printable(robot.name)}"
         return Text.assemble((path, "bold"), ": ", (effect(inspection), style), name)
     if not inspection.is_passed:
         style = _STYLES["rejected"]
@@ -96,9 +118,9 @@ def _log_lines(inspection: Inspection) -> Iterator[str]:
 def _remarks_on(inspection: Inspection) -> Iterator[str]:
     """Yield what is known of releases and of driving, and how many problems are not shown."""
     shown = inspection.robot
-    if inspection.extent is not None:
+    if inspection.extent:
         yield inspection.extent.words
-    if shown is not None and shown.driving:
+    if shown and shown.driving:
         yield printable(shown.driving)
     if inspection.ignored:
         yield f"{inspection.ignored} ignored"
@@ -108,7 +130,7 @@ def _remarks_on(inspection: Inspection) -> Iterator[str]:
 
 def _robot_rows(inspection: Inspection, console: Console) -> Iterator[Text]:
     """Yield a row for each robot of a workspace, below a title; the only one has several rows."""
-    if inspection.extent is None or not inspection.robots:
+    if not inspection.extent or not inspection.robots:
         return
     is_only = len(inspection.robots) == 1
     yield Text()
@@ -137,7 +159,7 @@ def _first_robots(rows: list[Text], room: "_RowsLeft") -> list[Text]:
     The first few rows are in no other room.
     """
     rest = rows[_LEAST_ROBOTS:]
-    if len(rest) <= room.rows:
+    if not rest or len(rest) <= room.rows:
         room.rows -= len(rest)
         return rows
     most = _LEAST_ROBOTS + max(0, int(room.rows)) - 1
@@ -162,10 +184,34 @@ def _whole_robots(
             rows += [Text(), block(console, Text(f"{title}{path}", "bold"), 0)]
             for name, words in lines:
                 rows.append(block(console, Text.assemble(name, (words, "dim")), INDENT))
-    is_asked = verbose or inspection.extent is None or inspection.is_posed
+    is_asked = verbose or not inspection.extent or inspection.is_posed
     if is_asked or sum(map(count_rows, rows)) <= room.rows:
         return rows
     return []
+
+
+def _recording_rows(inspection: Inspection, console: Console) -> Iterator[Text]:
+    """Yield what each recording shows: facts, faults and topics, below a title."""
+    for recording in inspection.recordings:
+        yield Text()
+        yield block(console, Text(f"Recording {printable(recording.path)}", "bold"), 0)
+        for text in recording.facts:
+            yield block(console, Text(printable(text)), INDENT)
+        for text in recording.faults:
+            yield block(console, Text(printable(text), "yellow"), INDENT)
+        for topic in recording.topics:
+            row = Text.assemble(printable(topic.name), (f"  {describe_topic(topic)}", "dim"))
+            yield block(console, row, INDENT)
+
+
+def describe_topic(topic: "RecordedTopic") -> str:
+    """Return what was recorded on a topic: types, messages and rates."""
+    parts = [" and ".join(topic.types), counted(topic.count, "message")]
+    if topic.rate is not None:
+        parts.append(f"{topic.rate:.1f} Hz")
+    if topic.recorder_rate is not None:
+        parts[-1] += f" ({topic.recorder_rate:.1f} Hz by the recorder's clock)"
+    return printable(", ".join(filter(None, parts)))
 
 
 class _RowsLeft:
@@ -190,16 +236,19 @@ class _ProblemRows:
     """
 
     def __init__(self, inspection: Inspection, console: Console, *, verbose: bool) -> None:
-        self._inspection, self._console = inspection, console
-        shown = inspection.robot if inspection.extent is None else None
-        self._urdf = shown.reading.source.path if shown is not None else ""
+        self._inspection = inspection
+        self._console = console
+        shown = inspection.robot if not inspection.extent else None
+        self._urdf = shown.reading.source.path if shown else ""
         causes = group_problems(inspection.problems, with_other_messages=not verbose)
         errors = [cause for cause in causes if cause.problem.severity == "error"]
         self._kinds = group_causes(causes[len(errors) :])
-        most, self._most_excerpts = _MAX_CAUSES, _MAX_EXCERPTS
+        most = _MAX_CAUSES
+        self._most_excerpts = _MAX_EXCERPTS
         if verbose:
             most = self._most_excerpts = len(errors)
-        self._errors, self._rest = errors[:most], errors[most:]
+        self._errors = errors[:most]
+        self._rest = errors[most:]
         self._error_texts = [self._in_a_row(cause) for cause in self._errors]
         self._kind_texts = [self._kind_in_a_row(kind) for kind in self._kinds]
         self._is_cut = bool(self._rest)
@@ -225,7 +274,8 @@ class _ProblemRows:
         wholes = [self._whole(cause) for cause in self._errors]
         for index, whole in enumerate(wholes):
             self._replaces(index, self._begun(self._errors[index], whole), room)
-        complete, placed = list[int](), list[int]()
+        complete = list[int]()
+        placed = list[int]()
         for index, whole in enumerate(wholes):
             if self._replaces(index, whole, room):
                 complete.append(index)
@@ -258,7 +308,8 @@ class _ProblemRows:
 
     def _in_a_row(self, cause: Cause) -> Text:
         """Return an error in one row; a long path without its start."""
-        head, message = _write_label(cause), printable(cause.problem.message)
+        head = _write_label(cause)
+        message = printable(cause.problem.message)
         head.append(f"{cause.problem.rule} ".lstrip())
         more = f" and {len(cause.others)} more" if cause.others else ""
         room = self._console.width - len(head) - len(more) - _MIN_MESSAGE
@@ -283,7 +334,7 @@ class _ProblemRows:
 
     def _begun(self, cause: Cause, whole: Text) -> Text:
         """Return the first two rows of a problem, without that of its code if it is alone there."""
-        lines = [*whole.split("\n")]
+        lines = list(whole.split("\n"))
         most = 3 if len(lines[0]) < len(_write_label(cause)) else 2
         if len(lines) <= most:
             return whole
@@ -295,8 +346,9 @@ class _ProblemRows:
         if not cause.others:
             return self._whole(cause)
         text = self._inset(cause, self._place(cause._replace(problems=cause.problems[:1])))
-        files = [*places_text(cause.others, self._urdf)]
-        places, longest = "; ".join(files), max(len(file.split(" ")[0]) for file in files)
+        files = list(places_text(cause.others, self._urdf))
+        places = "; ".join(files)
+        longest = max(len(file.split(" ")[0]) for file in files)
         words = "also at" if cause.is_repeated else "likewise at"
         indent = " " * len(_write_label(cause))
         if longest >= self._console.width - len(indent):
@@ -308,14 +360,15 @@ class _ProblemRows:
         """Return the text of an error with the line of its source, if that can be read."""
         at = cause.problem.location
         source = self._inspection.source(at.path)
-        if source is None:
+        if not source:
             return text
         indent = min(len(_write_label(cause)), self._console.width // 5)
         return text + Text("\n") + excerpt_block(self._console, source, at, indent)
 
     def _inset(self, cause: Cause, where: str) -> Text:
         """Return a message behind its code and place, or below the code if the place is long."""
-        console, head = self._console, _write_label(cause)
+        console = self._console
+        head = _write_label(cause)
         rule = f"{cause.problem.rule} ".lstrip()
         text = Text.assemble(rule, (where, "dim"), printable(cause.problem.message))
         if len(where.split(" ", maxsplit=1)[0]) < console.width - len(head):

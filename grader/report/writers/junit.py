@@ -81,7 +81,7 @@ def _facts(report: Report) -> dict[str, str]:
         "score": format_points(report.score),
         "max_score": format_points(report.max_score),
         "pending": format_points(report.pending),
-        **({"grade": counting_text(report)} if report.grade is not None else {}),
+        **({"grade": counting_text(report)} if report.grade else {}),
         "submission": printable(submission.id),
         "submission_sha256": submission.sha256 or "",
         "rubric": printable(report.rubric.id),
@@ -91,15 +91,18 @@ def _facts(report: Report) -> dict[str, str]:
 
 
 def _case(suite: Any, entry: Entry, report: Report, base: Base) -> None:
-    result, criterion, where = entry.result, entry.result.criterion, entry.location
+    result = entry.result
+    criterion = entry.result.criterion
+    where = entry.location
     name = printable(f"{criterion.title} ({criterion.id})")
     group = f"{report.rubric.id}.{criterion.part}"
     case = etree.SubElement(suite, "testcase", name=name, classname=group)
-    if where is not None and where.path != "-" and not (base.archive or archive_around(where.path)):
+    if where and where.path != "-" and not (base.archive or archive_around(where.path)):
         case.set("file", printable(base.folder + where.path))
         case.set("line", str(where.line))
     _properties(case, {"points": earned_text(result)})
-    kind, lines = _kind(result), plain_lines(entry, report.submission.source)
+    kind = _kind(result)
+    lines = plain_lines(entry, report.submission.source)
     if not kind:
         _put(case, "system-out", lines)
         return

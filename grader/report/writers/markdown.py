@@ -51,7 +51,8 @@ def cut_markdown(report: Report, most: int) -> str:
     It is for job summaries, which students read, so it has no model answers.
     """
     blocks = [f"{block}\n" for block in _blocks(report, answers=False)]
-    whole, room = "\n".join(blocks), most - len(_CUT.encode())
+    whole = "\n".join(blocks)
+    room = most - len(_CUT.encode())
     if len(whole.encode()) <= most:
         return whole
     ends = accumulate(len(block.encode()) + 1 for block in blocks)
@@ -117,7 +118,8 @@ def _entry_head(entry: Entry) -> str:
 
     Of another criterion, return the points, and the title where it holds.
     """
-    result, name = entry.result, code(entry.id)
+    result = entry.result
+    name = code(entry.id)
     if entry.lost or is_failure(result):
         return f"**{entry.cost}**: {code(entry.names)}"
     if result.is_adjusted:
@@ -133,7 +135,7 @@ def _details(entry: Entry, report: Report, *, answers: bool) -> Iterator[str]:
                 yield _LOOKS.get(role, "{}").format(escape_words(text))
             case Location():
                 yield code(location_text(block))
-                if excerpt := [*excerpt_lines(block, report.submission.source)]:
+                if excerpt := list(excerpt_lines(block, report.submission.source)):
                     yield fence(excerpt)
             case Answer(title, lines) if answers or title == "Found":
                 yield f"{title}:"
@@ -150,12 +152,8 @@ def _fold_passed(group: CriteriaGroup) -> str:
         if has_passed(result)
     ]
     if lines:
-        return _fold(f"{printable(group.title)} {group.points}", lines)
+        summary = f"{printable(group.title)} {group.points}"
+        shown = MENTION.sub("\\g<0>\u2060", html.escape(summary))
+        # CommonMark reads Markdown in HTML only after an empty line.
+        return "\n".join(("<details>", f"<summary>{shown}</summary>", "", *lines, "", "</details>"))
     return ""
-
-
-def _fold(summary: str, lines: list[str]) -> str:
-    """Return Markdown below a line of printable text that unfolds it."""
-    shown = MENTION.sub("\\g<0>\u2060", html.escape(summary))
-    # CommonMark reads Markdown in HTML only after an empty line.
-    return "\n".join(("<details>", f"<summary>{shown}</summary>", "", *lines, "", "</details>"))

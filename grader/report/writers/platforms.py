@@ -14,11 +14,11 @@ maximum, even with extra credit. The test of a bonus shows its points, and is no
 maximum. https://github.com/foundation50/classroom50
 """
 
-import re
-from collections.abc import Mapping
 from typing import Any
 
 from grader.base.errors import InputError
+from grader.base.grouping import StringsByName
+from grader.base.patterns import on_use
 from grader.base.text import counted_points, printable
 from grader.lab.grading.report import Report, Result
 from grader.report.content import entries
@@ -52,7 +52,9 @@ def render_gradescope(report: Report) -> str:
 
 
 def _gradescope_test(entry: Entry, report: Report) -> dict[str, Any]:
-    result, criterion, status = entry.result, entry.result.criterion, entry.result.outcome.status
+    result = entry.result
+    criterion = entry.result.criterion
+    status = entry.result.outcome.status
     kinds = []
     if criterion.bonus:
         kinds.append("extra credit")
@@ -86,12 +88,12 @@ def _gradescope_points(result: Result) -> dict[str, Any]:
 
 _REQUIRED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "USERNAME", "COMMIT_URL", "RELEASE_URL")
 _KINDS = ("individual", "group", "team")
-_TAG = re.compile(
+_TAG = on_use(
     r"submit/([0-9]{4}-[01][0-9]-[0-3][0-9])T([01][0-9]|2[0-3])-([0-5][0-9])-([0-5][0-9])Z-[!-~]+"
 )
 
 
-def identity_from(environment: Mapping[str, str]) -> dict[str, str]:
+def identity_from(environment: StringsByName) -> dict[str, str]:
     """Return whose result it is, from the runner's environment variables.
 
     Raises InputError if some are missing.
@@ -104,7 +106,7 @@ def identity_from(environment: Mapping[str, str]) -> dict[str, str]:
         )
     given = {name: printable(environment[name]) for name in _REQUIRED}
     tag = _TAG.fullmatch(environment["SUBMISSION_TAG"])
-    if tag is None:
+    if not tag:
         raise InputError(
             "SUBMISSION_TAG must look like submit/2026-09-01T10-00-00Z-ab12cd3, not "
             f"{given['SUBMISSION_TAG']!r}"
@@ -128,7 +130,7 @@ def identity_from(environment: Mapping[str, str]) -> dict[str, str]:
     }
 
 
-def render_classroom50(report: Report, identity: Mapping[str, str]) -> str:
+def render_classroom50(report: Report, identity: StringsByName) -> str:
     """Return the report. What needs manual grading has not passed and has no points."""
     scale = _scale(report)
     return to_json(
@@ -159,7 +161,7 @@ def _classroom50_test(entry: Entry, report: Report, scale: int) -> dict[str, Any
     if result.criterion.bonus:
         lines = [f"Extra credit: {earned_text(result)}. It is not part of the maximum.", *lines]
     return {
-        "test-name": printable(f"{result.criterion.title} ({result.criterion.id})"),
+        "test-name": printable(f"{result.criterion.title} ({result.id})"),
         "passed": entry.status in ("passed", "adjusted"),
         "score": int(min(result.points, result.criterion.points) * scale),
         "max-score": int(result.criterion.points * scale),

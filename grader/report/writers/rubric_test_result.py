@@ -1,17 +1,18 @@
 """The result of testing a rubric, as plain text and as JSON, schema grader/rubric-test/v1."""
 
-import re
 import textwrap
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from os.path import commonprefix
 
 from grader import __version__
+from grader.base.patterns import on_use
 from grader.base.text import (
     counted,
     enumerated,
     first_lines,
     format_points,
+    indent_of,
     printable,
     without_commands,
 )
@@ -40,10 +41,11 @@ from grader.report.json_data import (
 )
 from grader.report.writers.as_json import SCORE
 
-_MAX_LISTED, _MAX_DIFF = 10, 14
+_MAX_LISTED = 10
+_MAX_DIFF = 14
 _DEEPEST = 4  # indentation of a sentence
 _OF_ELEMENT = ("element deleted", "visual added")  # mutations whose place is no attribute
-_NUMBER_OF_ID = re.compile(r" \(\d+\)$")  # of equal ones
+_NUMBER_OF_ID = on_use(r" \(\d+\)$")  # of equal ones
 
 
 def render_rubric_test(test: RubricTest, width: int) -> str:
@@ -55,8 +57,8 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     if test.lost:
         lines += ["", "The reference does not get full marks:"]
         for result in test.reference.results:
-            if result.criterion.id in test.lost:
-                lines.append(f"  {result.criterion.id}: {result.outcome.message}")
+            if result.id in test.lost:
+                lines.append(f"  {result.id}: {result.outcome.message}")
     differing = test.samples.different if test.samples else ()
     lines += _listed("These equivalents of the reference lose points:", test.losses, width)
     lines += _listed("These samples differ from their expected.toml:", differing, width)
@@ -110,7 +112,7 @@ def _fold(line: str, width: int) -> list[str]:
     """Return a line that fits: a sentence is wrapped, a line of a diff or table is cut."""
     if len(line) <= width:
         return [line]
-    indent = line[: len(line) - len(line.lstrip())]
+    indent = indent_of(line)
     if line.lstrip()[:1] in "+-@" or len(indent) > _DEEPEST:
         return [f"{line[: width - 3]}..."]
     return textwrap.wrap(
@@ -119,11 +121,12 @@ def _fold(line: str, width: int) -> list[str]:
 
 
 def _count_lines(test: RubricTest) -> Iterator[str]:
-    report, samples = test.reference, test.samples
+    report = test.reference
+    samples = test.samples
     decided = worth(
         result.criterion
         for result in report.results
-        if not result.is_open or result.criterion.id in test.lost
+        if not result.is_open or result.id in test.lost
     )
     yield f"Reference    {format_points(report.score)} of {decided.text}"
     if test.equivalents:
@@ -133,7 +136,7 @@ def _count_lines(test: RubricTest) -> Iterator[str]:
         yield "Equivalents  none of this reference"
     elif not test.is_interrupted:
         yield "Equivalents  none graded: ROS 2 does not load the reference without problems"
-    if samples is not None:
+    if samples:
         differ = _count_or_none(len(samples.different), "differs", "differ")
         line = f"Samples      {samples.tried} graded, {differ} from expected.toml"
         if samples.skipped:

@@ -7,7 +7,7 @@ https://docs.github.com/en/code-security/code-scanning/integrating-with-code-sca
 import json
 from collections.abc import Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from urllib.parse import quote
 
 from grader import __version__
@@ -16,39 +16,25 @@ from grader.base.source import Base, SourceOf
 from grader.report.findings import (
     DOCUMENTATION,
     Finding,
-    findings_in_inspection,
     fingerprints,
     message_in_repository,
     place_in_repository,
 )
-from grader.report.inspection import Inspection
 from grader.report.json_data import to_json
 
-if TYPE_CHECKING:
-    from grader.lab.grading.report import Report
+_Object = dict[str, Any]
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _ROOT = "%SRCROOT%"  # of the repository, as GitHub calls it
 
 
-def render_sarif(report: "Report", base: Base) -> str:
-    """Return the findings of a report; their rules are criteria and kinds of problems."""
-    from grader.report.mistakes import findings_in_report  # late: only a report has criteria
-
-    return _log(findings_in_report(report), base, cache(report.submission.source))
-
-
-def sarif_inspection(inspection: Inspection) -> str:
-    """Return the findings of an inspection; their rules are kinds of problems."""
-    return _log(findings_in_inspection(inspection), inspection.base, cache(inspection.source))
-
-
-def _log(findings: Sequence[Finding], base: Base, source_of: SourceOf) -> str:
-    """Return a log of one run, with the rules that have a result.
+def render_sarif(findings: Sequence[Finding], base: Base, source_of: SourceOf) -> str:
+    """Return a log of one run, with the rules that have a result: criteria and kinds of problems.
 
     Several rules may share a code, which is their id: `ruleIndex` says which of them is meant.
     """
-    rules: dict[tuple[str, str], dict[str, Any]] = {}
+    read_once = cache(source_of)
+    rules: dict[tuple[str, str], _Object] = {}
     for finding in findings:
         rules.setdefault((finding.rule.id, finding.rule.name), _rule(finding))
     names = sorted(rules)
@@ -60,7 +46,7 @@ def _log(findings: Sequence[Finding], base: Base, source_of: SourceOf) -> str:
             "ruleIndex": index,
             "level": finding.severity,
             "message": {"text": message_in_repository(finding, base)},
-            "locations": [{"physicalLocation": _physical_location(finding, base, source_of)}],
+            "locations": [{"physicalLocation": _physical_location(finding, base, read_once)}],
             "partialFingerprints": {"grader/v1": fingerprint},
         }
         results.append(result)
@@ -76,10 +62,10 @@ def _log(findings: Sequence[Finding], base: Base, source_of: SourceOf) -> str:
     return f"{start}{run.rstrip()}]\n}}\n"
 
 
-def _rule(finding: Finding) -> dict[str, Any]:
+def _rule(finding: Finding) -> _Object:
     """Return the rule of a finding; GitHub requires each of its texts."""
     rule = finding.rule
-    data: dict[str, Any] = {
+    data: _Object = {
         "id": rule.id,
         "shortDescription": {"text": rule.title},
         "fullDescription": {"text": rule.explanation},
@@ -93,10 +79,10 @@ def _rule(finding: Finding) -> dict[str, Any]:
     return data
 
 
-def _physical_location(finding: Finding, base: Base, source_of: SourceOf) -> dict[str, Any]:
+def _physical_location(finding: Finding, base: Base, source_of: SourceOf) -> _Object:
     path, where = place_in_repository(finding, base)
-    place: dict[str, Any] = {"artifactLocation": {"uri": quote(path), "uriBaseId": _ROOT}}
-    if where is not None:
+    place: _Object = {"artifactLocation": {"uri": quote(path), "uriBaseId": _ROOT}}
+    if where:
         end = ended(where, source_of)
         place["region"] = {
             "startLine": where.line,

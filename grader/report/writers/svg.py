@@ -17,7 +17,7 @@ def render_svg(report: Report) -> str:
     if report.another_robot:
         words += notes(report)[:1]
     for result in report.results:
-        words += [f"{printable(result.criterion.id)}: {remark}" for remark in remarks_on(result)]
+        words += [f"{printable(result.id)}: {remark}" for remark in remarks_on(result)]
     return drawing_file(
         draw_report(report), f"{report.rubric.title}: {score_text(report)}", words, NO_PICTURE
     )

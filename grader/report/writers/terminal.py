@@ -6,7 +6,7 @@ It has the first mistakes in full, and a line for each further one; `--verbose` 
 of a submission is never interpreted as markup or control codes.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from textwrap import shorten
 from typing import TYPE_CHECKING, get_args
@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     pass
 
 
-_LOOKS: Mapping[Role, str] = {
+_LOOKS = {
     **dict.fromkeys(get_args(Role), ""),
     **dict.fromkeys(("result", "comment", "hint"), "bold"),
     **dict.fromkeys(("graded", "provenance", "expected", "part", "ignored", "there"), "dim"),
@@ -71,7 +71,9 @@ _DIFF_STYLES = {"-": "red", "+": "green"}
 _MAX_WHOLE = 5  # mistakes in full
 _MANY, _MAX_HINTS = 5, 2  # criteria; of more, so many hints in full
 _MAX_ROWS, _HEIGHT_OF_END = 18, 2  # of a report of one mistake; its last lines
-_MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
+_MAX_NAMES = 3
+_MAX_PROBLEMS = 3
+_MAX_FILES = 2
 
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
@@ -130,8 +132,8 @@ def _show_carried(carried: Sequence[Line], page: Page) -> None:
 
 def _is_robot_wrong(sections: ReportSections) -> bool:
     """Return whether a mistake is in the robot, or a part of it is missing."""
-    wrong = (*sections.mistakes, *sections.unbuilt)
-    return any(entry.result.criterion.check.subject in ("urdf", "robot") for entry in wrong)
+    wrong = sections.mistakes + sections.unbuilt
+    return any(entry.result.criterion.check.is_of_robot for entry in wrong)
 
 
 def _show_remarks(section: Section, page: Page) -> None:
@@ -172,7 +174,7 @@ def _show_start(report: Report, sections: ReportSections, page: Page) -> None:
     rejected = ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
     page.line(content.graded_line(report) + rejected, _LOOKS["graded"])
     page.line(content.result_line(report, sections), _LOOKS["result"])
-    if submission.package is not None and submission.package.folder:
+    if submission.package and submission.package.folder:
         folder = f"{submission.package.folder}/"
     else:
         folder = ""
@@ -244,7 +246,7 @@ def _show_entry(entry: Entry, report: Report, page: Page, blocks: Iterable[Block
                 page.inset(text, _LOOKS[role])
             case Location():
                 source = source_of(part.path)
-                if source is not None and source.line(part.line).strip():
+                if source and source.line(part.line).strip():
                     page.rows.append(excerpt_block(page.console, source, part, INDENT))
             case Answer() | Diff():
                 _show_lines(part, source_of, page)
@@ -266,7 +268,7 @@ def _mistake_head(entry: Entry, page: Page) -> Text:
     """Return what a mistake costs, its criteria, and its place."""
     cost = (entry.cost, STYLES[entry.status]), ": ", (entry.names, "bold")
     text = Text.assemble(page.mark(entry.status), " ", *cost)
-    if entry.location is not None:
+    if entry.location:
         text.append("  ").append(_place(entry.location, page))
     return text
 
@@ -279,7 +281,8 @@ def _place(where: Location, page: Page) -> Text:
 
 def _entry_head(entry: Entry, page: Page) -> Text:
     """Return the title, name and points of a criterion that did not fail."""
-    title, name = printable(entry.result.criterion.title), printable(entry.id)
+    title = printable(entry.result.criterion.title)
+    name = printable(entry.id)
     points = earned_text(entry.result)
     return Text.assemble(
         page.mark(entry.status), " ", (title, "bold"), (f"  {name}", "dim"), f"  {points}"
@@ -414,7 +417,8 @@ def _show_section(section: Section, report: Report, page: Page) -> None:
 def _show_parts(report: Report, page: Page) -> None:
     """Add each part with its groups and all their criteria."""
     for part, part_groups in groupby(groups(report), key=lambda group: group.part):
-        members, title = list(part_groups), report.rubric.part(part).title
+        members = list(part_groups)
+        title = report.rubric.part(part).title
         if len(report.parts) > 1:
             points = earned_text(*(result for group in members for result in group.results))
             page.title(f"{printable(title)}  {points}", "bold underline")
@@ -448,4 +452,4 @@ def _criterion_row(result: Result) -> Text:
         reason = f"  not deducted: caused by {printable(result.carried)}"
     elif status == "skipped" and result.because is not None:
         reason = f"  skipped because {printable(result.because)} failed"
-    return Text.assemble(printable(result.criterion.id), (reason, "dim"))
+    return Text.assemble(printable(result.id), (reason, "dim"))

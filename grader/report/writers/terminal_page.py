@@ -1,12 +1,13 @@
 """The rows of a report, an inspection or a table on a terminal."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.text import Text
 
 from grader.base.problems import Severity
+from grader.base.records import Named
 from grader.base.source import Location, Source
 from grader.report.locations import excerpt
 from grader.report.statuses import ASCII_SYMBOLS, STYLES, SYMBOLS
@@ -22,7 +23,7 @@ SEVERITY_LOOKS: Mapping[Severity, str] = {
 }
 
 
-class Page(NamedTuple):
+class Page(Named):
     """The rows of a report for a console. All texts are printable."""
 
     console: Console
@@ -107,7 +108,8 @@ def excerpt_block(console: Console, source: Source, where: Location, indent: int
     """Return the source line of a location, and a line that underlines the marked part."""
     number = str(where.line)
     before, meant, after = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
-    mark, bar = _symbol(console, "\u2500", "-"), _symbol(console, "\u2502", "|")
+    mark = _symbol(console, "\u2500", "-")
+    bar = _symbol(console, "\u2502", "|")
     text = Text.assemble(
         (f"{' ' * indent}{number} {bar} ", "dim"), (before + meant + after).rstrip()
     )

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.base.extents import ended
+from grader.base.grouping import StringsByName
 from grader.base.problems import Severity
 from grader.base.source import Base, Location, SourceOf
 from grader.base.text import printable, without_tag_commands
@@ -11,7 +12,7 @@ from grader.report.locations import archive_around, location_text
 
 _MAX_ANNOTATIONS = 10  # of each type
 _MAX_MESSAGE = 4000  # characters
-_COMMANDS: dict[Severity, str] = {"error": "error", "warning": "warning", "note": "notice"}
+_COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 
 
 class Annotation(NamedTuple):
@@ -33,17 +34,18 @@ def limited_annotations(annotations: Sequence[Annotation], notices: int) -> Iter
         yield from (command(name, one.place, one.title, one.text) for one in listed)
 
 
-def annotation_place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[str, str]:
+def annotation_place(where: Location | None, source_of: SourceOf, base: Base) -> StringsByName:
     """Return the properties of an annotation at a location.
 
     The location is as seen from the root of the repository; without one, they are empty.
     """
-    if where is None or base.is_outside:  # a file of the repository may have the same path
+    if not where or base.is_outside:  # a file of the repository may have the same path
         return {}
     if archive := base.archive or archive_around(where.path):
         return {"file": printable(archive if base.archive else base.folder + archive)}
     where = ended(where, source_of)
-    file, end_line = printable(base.folder + where.path), str(where.end_line)
+    file = printable(base.folder + where.path)
+    end_line = str(where.end_line)
     place = {"file": file, "line": str(where.line), "endLine": end_line}
     if where.end_line == where.line:  # GitHub takes the columns of a single line only
         place["col"] = str(where.column)
@@ -56,9 +58,7 @@ def annotation_text(lines: list[str], where: Location | None, base: Base) -> str
 
     That is in a macro, or not in a file of the repository.
     """
-    if where is not None and (
-        base.archive or base.is_outside or archive_around(where.path) or where.calls
-    ):
+    if where and (base.archive or base.is_outside or archive_around(where.path) or where.calls):
         lines = [*lines, f"In {location_text(where)}."]
     return "\n".join(lines)
 
@@ -70,7 +70,7 @@ def _rest_finding(annotations: Sequence[Annotation]) -> Annotation:
     return annotations[0]._replace(title=f"{len(annotations)} more", text=text, place={})
 
 
-def command(name: str, place: Mapping[str, str], title: str, text: str) -> str:
+def command(name: str, place: StringsByName, title: str, text: str) -> str:
     """Return one annotation of printable text, with a line break at its end.
 
     It is an `error`, `warning` or `notice`.

@@ -5,10 +5,10 @@ What is read are the fixed frame and the enabled displays.
 
 from collections.abc import Iterator
 from contextlib import suppress
-from typing import NamedTuple
 
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.problems import Problem
+from grader.base.records import Named
 from grader.base.reuse import reuse
 from grader.base.slips import fix_together
 from grader.base.source import Location, Source
@@ -20,7 +20,7 @@ from grader.ros.installation.places import is_of_one_machine
 _MAX_DISPLAYS = 500
 
 
-class Display(NamedTuple):
+class Display(Named):
     """One display; `kind` is its class without the package: RobotModel. `node` has its settings."""
 
     package: str
@@ -49,11 +49,12 @@ class Display(NamedTuple):
     @property
     def hides_links(self) -> str:
         """Why the links of a RobotModel are not drawn although it is on; empty if they are."""
-        alpha, links = self.node.get("Alpha"), self.node.get("Links")
+        alpha = self.node.get("Alpha")
+        links = self.node.get("Links")
         with suppress(ValueError):
-            if alpha is not None and float(alpha.text or "1") <= 0:
+            if alpha and float(alpha.text or "1") <= 0:
                 return "its Alpha is 0"
-        tables = links.value.values() if links is not None and isinstance(links.value, dict) else ()
+        tables = links.value.values() if links and isinstance(links.value, dict) else ()
         shown = [value for link in tables if (value := link.get("Value")) is not None]
         if shown and not any(_switched_on(switch, default=True) for switch in shown):
             return "all its links are off"
@@ -63,7 +64,7 @@ class Display(NamedTuple):
     def file(self) -> str:
         """The path of the file that a RobotModel may read in place of a topic; empty without."""
         node = self.node.get("Description File")
-        return (node.text or "" if node is not None else "").strip()
+        return (node.text or "" if node else "").strip()
 
     @property
     def reads_file_of_one_machine(self) -> bool:
@@ -76,7 +77,7 @@ class Display(NamedTuple):
         return (self.node.get("Class") or self.node).location
 
 
-class RvizFile(NamedTuple):
+class RvizFile(Named):
     """The content of an RViz file.
 
     `fault` is set where it cannot be read: nothing else is known then.
@@ -93,11 +94,11 @@ class RvizFile(NamedTuple):
     @property
     def problems(self) -> tuple[Problem, ...]:
         """The problems of the file, whatever it is graded on."""
-        if self.fault is not None:
+        if self.fault:
             return (self.fault,)
         if self.unread:
             return ()
-        listed = [self.conflict] if self.conflict is not None else []
+        listed = [self.conflict] if self.conflict else []
         for display in self.displays:
             if display.package == "rviz":
                 kind = display.kind
@@ -115,10 +116,10 @@ class RvizFile(NamedTuple):
 def read_rviz(data: bytes, path: str) -> RvizFile:
     """Read an RViz file. It never raises."""
     resolved = resolve_conflicts(data)
-    if resolved is not None:
+    if resolved:
         problem = Problem(kinds.BAD_RVIZ, resolved.message, Location(path, resolved.line, 1))
         return read_rviz(resolved.data, path)._replace(conflict=problem)
-    source = Source(path, data.decode("utf-8", "replace"))
+    source = Source.decoded(path, data)
     start = Location(path, 1, 1)
     try:
         manager = read_yaml(data, path).get("Visualization Manager")
@@ -129,7 +130,7 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
         message = f"not readable as YAML: {fault}"
         fixes = fix_together(lambda: yaml_slips(data, path))
         problem = Problem(kinds.BAD_RVIZ, message, fault.location, fixes=fixes)
-    if manager is None:
+    if not manager:
         return RvizFile(source, problem, None, start, ())
     frame = manager.get("Global Options", "Fixed Frame")
     displays = tuple(_displays(manager))
@@ -142,7 +143,7 @@ def _switched_on(node: YamlNode | None, *, default: bool) -> bool:
 
     Everything but false, 0 and the empty text is on (QVariant::toBool).
     """
-    if node is None or node.text is None:
+    if not node or node.text is None:
         return default
     return node.text.lower() not in ("false", "0", "")
 
@@ -154,12 +155,13 @@ def _displays(root: YamlNode) -> Iterator[Display]:
     """
     listed = root.get("Displays")
     is_on = _switched_on(root.get("Enabled"), default=_switched_on(root.get("Value"), default=True))
-    pending = [(node, is_on) for node in listed.items] if listed is not None else []
+    pending = [(node, is_on) for node in listed.items] if listed else []
     for _ in range(_MAX_DISPLAYS):
         if not pending:
             return
         node, group_enabled = pending.pop(0)
-        named, title = node.get("Class"), node.get("Name")
+        named = node.get("Class")
+        title = node.get("Name")
         package, _, kind = (named.text or "" if named else "").rpartition("/")
         display = Display(package, kind, title.text or "" if title else "", group_enabled, node)
         yield display

@@ -3,18 +3,19 @@
 It is read by event: neither depth nor aliases use unlimited time or memory.
 """
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 import yaml
 
+from grader.base.grouping import Span, Strings
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _MAX_EVENTS = 25_000
-_LIKE_AN_ALIAS = re.compile(r"(?<![\w/*])\*\w")  # not the key /**
+_LIKE_AN_ALIAS = on_use(r"(?<![\w/*])\*\w")  # not the key /**
 _MAX_ALIASES = 1000
 _MAX_AGAIN = 2_000  # values that a walk looks at again, for which aliases stand
 _MAX_DEPTH = 200  # the parser gets slower with each open bracket
@@ -73,7 +74,7 @@ class YamlNode:
         return _locate_mark(self.source, self.mark)
 
     @property
-    def span(self) -> tuple[int, int]:
+    def span(self) -> Span:
         """The offsets of the start and the end of a text, with its quotes."""
         shift = int(self.source.text.startswith("\ufeff"))
         return self.mark.index + shift, self.end_mark.index + shift
@@ -92,21 +93,18 @@ class YamlNode:
         """Return the node at a path of keys, None where there is none."""
         node: YamlNode | None = self
         for key in keys:
-            if node is not None and isinstance(node.value, dict):
-                node = node.value.get(key)
-            else:
-                node = None
+            node = node.value.get(key) if node and isinstance(node.value, dict) else None
         return node
 
     def key_location(self, *keys: str) -> Location:
         """Return where the last of some keys, which are there, begins."""
         mapping = self.find_mapping(keys)
-        assert mapping is not None
+        assert mapping
         return _locate_mark(mapping.source, mapping.key_marks[keys[-1]])
 
-    def find_mapping(self, keys: "tuple[str, ...]") -> "YamlNode | None":
+    def find_mapping(self, keys: "Strings") -> "YamlNode | None":
         """Return the mapping that has the last of some keys."""
-        reached: dict[YamlNode, None] = {self: None}
+        reached = {self: None}
         for above in keys[:-1]:
             inside: dict[YamlNode, None] = {}
             for mapping in reached:
@@ -120,6 +118,11 @@ class YamlNode:
         if isinstance(self.value, str):
             return self.value
         return None
+
+    @property
+    def table(self) -> "dict[str, YamlNode]":
+        """The keys of a mapping with their values; nothing for other values."""
+        return self.value if isinstance(self.value, dict) else {}
 
     @property
     def pairs(self) -> "list[tuple[str, YamlNode]]":
@@ -181,7 +184,9 @@ def check_one_document(text: str, path: str) -> None:
 
     This is a second document, and a tag that it does not know.
     """
-    source, documents, depth = Source(path, text), 0, 0
+    source = Source(path, text)
+    documents = 0
+    depth = 0
     try:
         for count, event in enumerate(yaml.parse(text, Loader=_LOADER)):
             documents += isinstance(event, yaml.DocumentStartEvent)
@@ -271,7 +276,8 @@ def _compose_nodes(events: Iterator[yaml.Event], source: Source) -> YamlNode:
         if open_nodes:
             _attach_node(*open_nodes[-1], node)
         elif first:
-            root, first = node, False
+            root = node
+            first = False
         if isinstance(event, yaml.CollectionStartEvent):
             open_nodes.append((node, []))
             if len(open_nodes) > _MAX_DEPTH:
@@ -283,7 +289,9 @@ class _Anchors:
     """The nodes that aliases stand for, by the names of their anchors."""
 
     def __init__(self, source: Source) -> None:
-        self._source, self._nodes, self._aliases = source, dict[str, YamlNode](), 0
+        self._source = source
+        self._nodes = dict[str, YamlNode]()
+        self._aliases = 0
 
     def node(self, event: yaml.NodeEvent) -> YamlNode:
         """Return the node of an event.
@@ -316,7 +324,7 @@ class _Anchors:
     def _resolve_alias(self, anchor: str, location: Location) -> YamlNode:
         self._aliases += 1
         anchored = self._nodes.get(anchor)
-        if anchored is None:
+        if not anchored:
             raise YamlFault(f"there is no anchor for the alias {anchor}", location)
         if self._aliases > _MAX_ALIASES:
             raise YamlFault(f"the file has more than {_MAX_ALIASES} aliases", location)

@@ -7,7 +7,9 @@ sign or nothing for a colon, or an item of a list behind its key.
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
-from grader.base.slips import Slip
+from grader.base.grouping import only_one
+from grader.base.patterns import on_use
+from grader.base.slips import Slip, Slips
 from grader.base.source import Edit, Location
 from grader.base.text import cut, quoted
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml
@@ -19,8 +21,8 @@ _MAX_LENGTH = 1_000  # characters of a line
 _MAX_SHOWN = 60
 _MAX_MOVED = 2  # columns of an indentation
 _MAX_DEPTH = 5  # of the keys of nodes
-_NO_BLANK = re.compile(r"(?<![A-Za-z_])([A-Za-z_][\w /.-]{1,80}):(?=[^\s:/]|/[^/])")
-_QUOTED_VALUE = re.compile(
+_NO_BLANK = on_use(r"(?<![A-Za-z_])([A-Za-z_][\w /.-]{1,80}):(?=[^\s:/]|/[^/])")
+_QUOTED_VALUE = on_use(
     r"""\s*(?P<key>[\w.]+):\s+(?P<written>(["'])
     (?P<value>[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?|true|false)\3)\s*(?:\#.*)?\Z""",
     re.VERBOSE,
@@ -58,7 +60,7 @@ def yaml_slips(data: bytes, path: str) -> list[Slip]:
     return [*slips, *_misspelt_keys(fault, Visits()), *_quoted_values(lines, path)]
 
 
-def _misspelt_keys(node: YamlNode, visits: Visits, depth: int = 0) -> Iterator[Slip]:
+def _misspelt_keys(node: YamlNode, visits: Visits, depth: int = 0) -> Slips:
     """Yield the keys that surely stand for ros__parameters, which rcl refuses."""
     if depth == _MAX_DEPTH or not visits.enters(node):
         return
@@ -73,14 +75,15 @@ def _misspelt_keys(node: YamlNode, visits: Visits, depth: int = 0) -> Iterator[S
             yield from _misspelt_keys(inner, visits, depth + 1)
 
 
-def _quoted_values(lines: Sequence[str], path: str) -> Iterator[Slip]:
+def _quoted_values(lines: Sequence[str], path: str) -> Slips:
     """Yield the numbers and booleans of parameters that are texts, because they are in quotes."""
     if not any(line.strip().startswith(f"{PARAMETERS}:") for line in lines):
         return
     for index, line in enumerate(lines):
         match = _QUOTED_VALUE.match(line) if len(line) <= _MAX_LENGTH else None
-        if match is not None:
-            written, value = match["written"], match["value"]
+        if match:
+            written = match["written"]
+            value = match["value"]
             column = match.start("written") + 1
             edit = Edit(path, index + 1, column, written, value)
             reaction = f"{written} of {match['key']} is a text"
@@ -115,7 +118,7 @@ def _meant(fault: YamlFault, lines: list[str], path: str) -> tuple[int, str] | N
     at = fault.location.line - 1
     for index in range(max(at - 2, 0), min(at + 1, len(lines))):
         for new in _changes(lines, index):
-            after = [*lines]
+            after = list(lines)
             after[index] = new
             result = _fault(after, path)
             if isinstance(result, YamlNode):
@@ -123,13 +126,13 @@ def _meant(fault: YamlFault, lines: list[str], path: str) -> tuple[int, str] | N
             elif result.location.line > fault.location.line:
                 further = further or (index, new)
     if complete:
-        return next(iter(complete.values())) if len(complete) == 1 else None
+        return only_one(complete.values())
     return further
 
 
 def _plain(root: YamlNode) -> tuple[object, ...]:
     """Return what a node holds, to compare it; what an alias stands for is only numbered again."""
-    held: list[object] = []
+    held = []
     numbers: dict[YamlNode, int] = {}
     waiting: list[object] = [root]
     while waiting:
@@ -173,7 +176,8 @@ def _with_other_indentation(lines: Sequence[str], index: int) -> Iterator[str]:
     line = lines[index]
     content = line.lstrip()
     blanks = line[: len(line) - len(content)]
-    above, below = _list_texts(reversed(lines[:index])), _list_texts(lines[index + 1 :])
+    above = _list_texts(reversed(lines[:index]))
+    below = _list_texts(lines[index + 1 :])
     near = (above + below)[:2] if "\t" in blanks else above[:1] + below[:1]
     for other in near:
         others = other[: len(other) - len(other.lstrip())]

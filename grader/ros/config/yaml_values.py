@@ -2,19 +2,21 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
+from grader.base.grouping import Strings
 from grader.base.names import near
+from grader.base.records import Named
 from grader.ros.config.yaml_nodes import Visits, YamlNode
 
 PARAMETERS = "ros__parameters"
 _MAX_DEPTH = 30
 
 
-class YamlValue(NamedTuple):
+class YamlValue(Named):
     """A text, or a list of texts, with its keys; `node` has its place."""
 
-    keys: tuple[str, ...]
+    keys: Strings
     node: YamlNode
 
     @property
@@ -34,7 +36,7 @@ def values_in(node: YamlNode) -> Iterator[YamlValue]:
     yield from _values_below(node, (), Visits())
 
 
-def _values_below(node: YamlNode, keys: tuple[str, ...], visits: Visits) -> Iterator[YamlValue]:
+def _values_below(node: YamlNode, keys: Strings, visits: Visits) -> Iterator[YamlValue]:
     if len(keys) > _MAX_DEPTH or not visits.enters(node):
         return
     if isinstance(node.value, dict):
@@ -47,10 +49,21 @@ def _values_below(node: YamlNode, keys: tuple[str, ...], visits: Visits) -> Iter
                 yield from _values_below(item, (*keys, str(number)), visits)
 
 
-_Section = tuple[tuple[str, ...], YamlNode]
+_Section = tuple[Strings, YamlNode]
 
 
-def sections_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[_Section]:
+def tables_in(node: YamlNode) -> Iterator[YamlNode]:
+    """Yield a table and all tables in it."""
+    pending = [node]
+    visits = Visits()
+    while pending:
+        table = pending.pop()
+        if isinstance(table.value, dict) and visits.enters(table):
+            yield table
+            pending += table.value.values()
+
+
+def sections_in(node: YamlNode, keys: Strings = ()) -> Iterator[_Section]:
     """Yield the parameters of each node in a parameter file.
 
     These are the keys of the node, and the mapping below.
@@ -58,7 +71,7 @@ def sections_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[_Section
     yield from _sections_below(node, keys, Visits(), {})
 
 
-def keys_of_sections(node: YamlNode) -> dict[str, tuple[str, ...]]:
+def keys_of_sections(node: YamlNode) -> dict[str, Strings]:
     """Return the keys of the sections of a parameter file by the full names of their nodes.
 
     A full name is such as /ns/node.
@@ -67,7 +80,7 @@ def keys_of_sections(node: YamlNode) -> dict[str, tuple[str, ...]]:
 
 
 def _sections_below(
-    node: YamlNode, keys: tuple[str, ...], visits: Visits, nested: dict[YamlNode, YamlNode]
+    node: YamlNode, keys: Strings, visits: Visits, nested: dict[YamlNode, YamlNode]
 ) -> Iterator[_Section]:
     if len(keys) > _MAX_DEPTH or not isinstance(node.value, dict) or not visits.enters(node):
         return
@@ -87,7 +100,8 @@ def _nested(node: YamlNode, made: dict[YamlNode, YamlNode]) -> YamlNode:
         return node
     if node in made:
         return made[node]
-    tables, places = dict[str, list[YamlNode]](), dict[str, Any]()
+    tables = dict[str, list[YamlNode]]()
+    places = dict[str, Any]()
     for key, inner in node.value.items():
         outer, _, last = key.partition(".")
         if last:
@@ -103,10 +117,14 @@ def _nested(node: YamlNode, made: dict[YamlNode, YamlNode]) -> YamlNode:
 
 def _joined(tables: list[YamlNode]) -> YamlNode:
     """Return the tables of one key as one; a value that is no table replaces those before it."""
-    first, value, marks = tables[0], dict[str, YamlNode](), dict[str, Any]()
+    first = tables[0]
+    value = dict[str, YamlNode]()
+    marks = dict[str, Any]()
     for table in tables:
         if not isinstance(table.value, dict) or not isinstance(first.value, dict):
-            first, value, marks = table, {}, {}
+            first = table
+            value = {}
+            marks = {}
         if isinstance(table.value, dict):
             value |= table.value
             marks |= table.key_marks

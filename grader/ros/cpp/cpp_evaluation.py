@@ -3,7 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, NamedTuple
 
-from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue, not_known
+from grader.base.grouping import are_texts
+from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue, as_scalar, not_known
 from grader.ros.cpp.declarations import (
     CppFunction,
     CppVariable,
@@ -11,6 +12,7 @@ from grader.ros.cpp.declarations import (
     find_declaration,
     is_constant,
     plain_name,
+    short_name,
 )
 from grader.ros.cpp.literals import (
     NUMBERS,
@@ -19,10 +21,11 @@ from grader.ros.cpp.literals import (
     number_of_literal,
     text_of_literal,
 )
-from grader.ros.cpp.syntax import CppNode, parse_cpp
+from grader.ros.cpp.syntax import NO_NODE, CppNode, CppNodes, parse_cpp
 from grader.ros.cpp.unit import (
     CppUnit,
     called_name,
+    called_object,
     is_conditional,
     list_arguments,
     template_arguments,
@@ -53,6 +56,7 @@ _READING_PARENTS = frozenset(
     }
 )
 _TEXT_TYPES = ("std::string", "std::string_view", "string", "string_view", "std::move")
+_PLAIN_TYPES = ("string", "char", "int", "double", "float", "bool", "size_t", "auto")
 _SAME_TEXT = ("c_str", "data", "str")
 _CALLS = ("call_expression", "compound_literal_expression", "new_expression")
 
@@ -72,29 +76,35 @@ class _Write(NamedTuple):
     value: CppValue
 
 
+_Writes = list[_Write] | Unknown
+
+
 class _LocalVariable:
     """A local variable of a function: where it is declared and written, and what changes it."""
 
-    def __init__(self, declared: Sequence[CppNode], uses: Sequence[CppNode]) -> None:
-        self.declared, self.uses = declared, uses
-        self.effects: list[tuple[CppNode, list[_Write] | Unknown]] | None = None
+    def __init__(self, declared: CppNodes, uses: CppNodes) -> None:
+        self.declared = declared
+        self.uses = uses
+        self.effects: list[tuple[CppNode, _Writes]] | None = None
 
 
 class CppEvaluation:
     """Evaluates expressions of files that are compiled together. All work is charged."""
 
     def __init__(self, unit: CppUnit, interface: LibraryCalls, budget: Budget) -> None:
-        self.unit, self._interface, self._budget = unit, interface, budget
+        self.unit = unit
+        self._interface = interface
+        self._budget = budget
         self._active: set[CppNode] = set()
         self._macros: dict[str, CppValue] = {}
         self._declared: dict[CppNode, CppValue] = {}
-        self._members: dict[CppNode, list[_Write] | Unknown] = {}
+        self._members: dict[CppNode, _Writes] = {}
         self._locals: dict[tuple[str, CppNode], _LocalVariable | None] = {}
         self._depth = 0
 
-    def evaluate_node(self, node: CppNode | None) -> CppValue:
+    def evaluate_node(self, node: CppNode) -> CppValue:
         """Return the value of an expression; None without one. It never raises."""
-        if node is None:
+        if not node:
             return None
         if self._depth >= _MAX_DEPTH or node in self._active:
             return not_known("it is nested too deeply")
@@ -134,8 +144,7 @@ class CppEvaluation:
 
     def inner(self, node: CppNode) -> CppValue:
         """Return the value of what is in parentheses, or is pointed to."""
-        argument = node.child("argument")
-        return self.evaluate_node(argument or next(iter(node.children), None))
+        return self.evaluate_node(node.child("argument") or node.first)
 
     def items(self, node: CppNode) -> CppValue:
         """Return the list of what is in braces."""
@@ -144,7 +153,7 @@ class CppEvaluation:
     def with_suffix(self, node: CppNode) -> CppValue:
         """Return the value of a literal with an ending of its own, such as a duration."""
         suffix = node.of_kind("literal_suffix")
-        value = self.evaluate_node(node.children[0]) if node.children else None
+        value = self.evaluate_node(node.first)
         ending = suffix[0].text if suffix else ""
         if isinstance(value, str) and ending in ("s", "sv"):
             return value
@@ -154,16 +163,13 @@ class CppEvaluation:
 
     def operator(self, node: CppNode) -> CppValue:
         """Return the value of a sign or of texts that are joined; others are not evaluated."""
-        written = node.child("operator")
-        sign = written.text if written is not None else ""
+        sign = node.child("operator").text
         if node.kind == "unary_expression":
             value = self.evaluate_node(node.child("argument"))
             is_number = isinstance(value, int | float) and not isinstance(value, bool)
             return -value if sign == "-" and is_number else not_known("it is computed")
-        left, right = (
-            self.evaluate_node(node.child("left")),
-            self.evaluate_node(node.child("right")),
-        )
+        left = self.evaluate_node(node.child("left"))
+        right = self.evaluate_node(node.child("right"))
         if sign == "+" and (_is_textual(left) or _is_textual(right)):
             return _joined([left, right])
         return not_known("it is computed")
@@ -171,10 +177,7 @@ class CppEvaluation:
     def call(self, node: CppNode) -> CppValue:
         """Return a call of a function or method that is recorded."""
         arguments = [self.evaluate_node(argument) for argument in list_arguments(node)]
-        function = node.child("function")
-        owner = None
-        if function is not None and function.kind == "field_expression":
-            owner = self.evaluate_node(function.child("argument"))
+        owner = self.evaluate_node(called_object(node))
         name = called_name(node)
         if _is_textual(owner) and name in _SAME_TEXT:
             return owner
@@ -187,8 +190,6 @@ class CppEvaluation:
         """Return what makes an object, `new Type(...)` or `Type{...}`, as a call of its type."""
         arguments = [self.evaluate_node(argument) for argument in list_arguments(node)]
         kind = node.child("type")
-        if kind is None:
-            return _constructed(CppCall("", arguments, node, ()))
         return _constructed(CppCall(plain_name(kind), arguments, node, template_arguments(kind)))
 
     # --- Names
@@ -196,10 +197,11 @@ class CppEvaluation:
 
     def name(self, node: CppNode) -> CppValue:
         """Return the value of a local variable, a member, a constant or a macro."""
-        name, function = node.text, self.unit.function_around(node)
-        if function is not None:
+        name = node.text
+        function = self.unit.function_around(node)
+        if function:
             local = self._local_variable(name, function)
-            if local is not None:
+            if local:
                 return self._value_of_local(node, local)
         if name in self.unit.macros and not self._variables_at(node, name):
             return self._value_of_macro(name)
@@ -212,10 +214,8 @@ class CppEvaluation:
 
     def member(self, node: CppNode) -> CppValue:
         """Return the value of a member of the object itself: `this->name`."""
-        owner, field = node.child("argument"), node.child("field")
-        if field is None:
-            return CppName("", node)
-        if owner is None or owner.kind != "this":
+        field = node.child("field")
+        if node.child("argument").kind != "this":
             return CppName(node.text, node)
         return self._value_of_shared(node, field.text, node.text)
 
@@ -229,8 +229,7 @@ class CppEvaluation:
 
     def _variables_at(self, node: CppNode, name: str) -> Sequence[CppVariable]:
         """Return the variables of namespaces and classes that a name may mean at a place."""
-        function = self.unit.function_around(node)
-        scopes = self.unit.list_scopes(function) if function is not None else ()
+        scopes = self.unit.scopes_at(node)
         return self.unit.variables_named(name, scopes)
 
     def _local_variable(self, name: str, function: CppFunction) -> "_LocalVariable | None":
@@ -241,18 +240,18 @@ class CppEvaluation:
             uses = [use for use in self.unit.uses.get(name, ()) if use.file is node.file]
             inside = [use for use in uses if node.start <= use.start < node.end]
             self._budget.charge(1 + len(uses) + _OF_USE * len(inside))
-            declared = [use for use in inside if find_declaration(use) is not None]
+            declared = [use for use in inside if find_declaration(use)]
             self._locals[key] = _LocalVariable(declared, inside) if declared else None
         return self._locals[key]
 
-    def find_uses(self, name: CppNode) -> Sequence[CppNode] | None:
+    def find_uses(self, name: CppNode) -> CppNodes | None:
         """Return where the variable is written that a name means at a place.
 
         Returns None where that is not known.
         """
         function = self.unit.function_around(name)
-        local = self._local_variable(name.text, function) if function is not None else None
-        if local is not None:
+        local = self._local_variable(name.text, function) if function else None
+        if local:
             self._budget.charge(1 + len(local.uses))
             return local.uses if len(local.declared) == 1 else None
         variables = self._variables_at(name, name.text)
@@ -267,14 +266,13 @@ class CppEvaluation:
             return not_known("the name is declared twice")
         name = local.declared[0]
         declaration = find_declaration(name)
-        assert declaration is not None
         if declaration.kind in ("parameter_declaration", "optional_parameter_declaration"):
             return CppName(node.text, name)
-        value = dict(declared_in(declaration)).get(name)
+        value = dict(declared_in(declaration)).get(name, NO_NODE)
         if is_constant(declaration):
             return self._value_once(name, declaration, value)
-        writes: list[_Write] = []
-        if value is not None:
+        writes = []
+        if value:
             writes.append(_Write("declared", name, self._value_once(name, declaration, value)))
         effects = self._effects_on(local, name, declaration)
         self._budget.charge(1 + len(effects))
@@ -283,7 +281,7 @@ class CppEvaluation:
                 if isinstance(effect, Unknown):
                     return effect
                 writes += effect
-        return _last(writes)
+        return _as_declared(_last(writes), declaration)
 
     def _effects_on(
         self, local: "_LocalVariable", name: CppNode, declaration: CppNode
@@ -291,7 +289,7 @@ class CppEvaluation:
         """Return what changes a local variable, and where; it is computed once."""
         if local.effects is None:
             local.effects = [(name, not_known("it depends on itself"))]
-            effects: list[tuple[CppNode, list[_Write] | Unknown]] = []
+            effects = []
             for use in local.uses:
                 effect = self._find_effect(use, declaration) if use is not name else []
                 if effect != []:
@@ -299,25 +297,25 @@ class CppEvaluation:
             local.effects = effects
         return local.effects
 
-    def _value_once(self, name: CppNode, declaration: CppNode, value: CppNode | None) -> CppValue:
+    def _value_once(self, name: CppNode, declaration: CppNode, value: CppNode) -> CppValue:
         """Return the value that a variable is declared with, which is evaluated once."""
         if name not in self._declared:
             self._declared[name] = not_known("it depends on itself")
-            self._declared[name] = self._value_declared(declaration, value)
+            evaluated = self._value_declared(declaration, value)
+            self._declared[name] = _as_declared(evaluated, declaration)
         return self._declared[name]
 
-    def _value_declared(self, declaration: CppNode, value: CppNode | None) -> CppValue:
+    def _value_declared(self, declaration: CppNode, value: CppNode) -> CppValue:
         """Return the value that a declaration gives its variable, maybe in parentheses."""
-        if value is None:
+        if not value:
             return not_known("it has no value")
         kind = declaration.child("type")
-        name = plain_name(kind) if kind is not None else ""
+        name = plain_name(kind)
         if value.kind in ("argument_list", "initializer_list", "parameter_list"):
             arguments = [self.evaluate_node(argument) for argument in value.children]
-            if value.kind == "initializer_list" and kind is not None and _is_plain(name):
+            if value.kind == "initializer_list" and short_name(name) in _PLAIN_TYPES:
                 return arguments[0] if len(arguments) == 1 else not_known("it has no value")
-            types = template_arguments(kind) if kind is not None else ()
-            return _constructed(CppCall(name, arguments, value, types))
+            return _constructed(CppCall(name, arguments, value, template_arguments(kind)))
         return self.evaluate_node(value)
 
     def _value_of_variable(self, variables: Sequence[CppVariable], node: CppNode) -> CppValue:
@@ -336,19 +334,21 @@ class CppEvaluation:
             self._members[variable.declarator] = not_known("it depends on itself")
             self._members[variable.declarator] = self._list_writes(variable, declaration)
         writes = self._members[variable.declarator]
-        return writes if isinstance(writes, Unknown) else self._value_written(writes, node)
+        if isinstance(writes, Unknown):
+            return writes
+        return _as_declared(self._value_written(writes, node), declaration)
 
-    def _list_writes(self, variable: CppVariable, declaration: CppNode) -> list[_Write] | Unknown:
+    def _list_writes(self, variable: CppVariable, declaration: CppNode) -> _Writes:
         """Return the values that a variable of a namespace or class gets."""
-        writes: list[_Write] = []
-        if variable.value is not None:
+        writes = []
+        if variable.value:
             value = self._value_once(variable.declarator, declaration, variable.value)
             writes.append(_Write("declared", variable.declarator, value))
         for use in self.unit.uses.get(variable.declarator.text, ()):
             self._budget.charge(_OF_USE)
             if use is variable.declarator or self._is_of_another(use, variable):
                 continue
-            more = self._find_effect(use, None)
+            more = self._find_effect(use, NO_NODE)
             if isinstance(more, Unknown):
                 return more
             writes += more
@@ -356,16 +356,16 @@ class CppEvaluation:
 
     def _is_of_another(self, use: CppNode, variable: CppVariable) -> bool:
         """Return whether a name certainly is another variable's: of another class, or a local."""
-        if use.parent is not None and use.parent.kind == "field_declaration":
+        if use.parent.kind == "field_declaration":
             return True
         function = self.unit.function_around(use)
-        if function is None:
+        if not function:
             return False
         is_local = self._local_variable(use.text, function) is not None
         if use.kind == "identifier" and is_local:
             return True
         is_of_this = use.kind == "identifier" or is_member_of_this(use)
-        scopes = self.unit.list_scopes(function)
+        scopes = function.inner_scopes
         variables = self.unit.variables_named(use.text, scopes)
         return is_of_this and bool(variables) and variables[0] is not variable
 
@@ -377,10 +377,11 @@ class CppEvaluation:
         if not settings:
             return _last(writes)
         [setting] = settings
-        where, here = self.unit.function_around(setting.node), self.unit.function_around(node)
-        if where is None or (where is here and node.start < setting.node.start):
+        where = self.unit.function_around(setting.node)
+        here = self.unit.function_around(node)
+        if not where or (where is here and node.start < setting.node.start):
             return not_known("it is set later")
-        is_constructor = where.name == where.owner.rpartition("::")[2]
+        is_constructor = where.name == short_name(where.owner)
         if len(writes) > 1 and not is_constructor:
             return not_known("it is set twice")
         return setting.value
@@ -388,18 +389,14 @@ class CppEvaluation:
     # --- What is done with a variable
     # ----------------------------------------------------------------------
 
-    def _find_effect(self, use: CppNode, declaration: CppNode | None) -> list[_Write] | Unknown:
+    def _find_effect(self, use: CppNode, declaration: CppNode) -> _Writes:
         """Return the values that a variable gets where its name is written.
 
         Returns Unknown where that is not known. `declaration` is that of a local one, whose methods
         may change it.
         """
-        node = use
-        if is_member_of_this(use) and use.parent is not None:
-            node = use.parent
+        node = use.parent if is_member_of_this(use) else use
         parent = node.parent
-        if parent is None:
-            return not_known("it may change")
         match parent.kind, node.field:
             case (("argument_list" | "template_argument_list"), _):
                 return self._effect_of_argument(node, parent)
@@ -412,12 +409,12 @@ class CppEvaluation:
                 return self._effect_of_method(node, parent, declaration)
         return [] if _is_read(node, parent) else not_known("it may change")
 
-    def _effect_of_argument(self, node: CppNode, given: CppNode) -> list[_Write] | Unknown:
+    def _effect_of_argument(self, node: CppNode, given: CppNode) -> _Writes:
         call = given.parent
-        if call is None or call.kind not in _CALLS:
-            is_read = call is not None and call.kind in ("field_initializer", "init_declarator")
+        if call.kind not in _CALLS:
+            is_read = call.kind in ("field_initializer", "init_declarator")
             return [] if is_read else not_known("it may change")
-        name = called_name(call).rpartition("::")[2]
+        name = short_name(called_name(call))
         position = self._interface.setting.get(name)
         arguments = list_arguments(call)
         if position is not None and node in arguments[position : position + 1]:
@@ -434,27 +431,23 @@ class CppEvaluation:
         arguments = list_arguments(call)
         return CppCall(name, [self.evaluate_node(arguments[0])], call, template_arguments(call))
 
-    def _effect_of_assignment(self, node: CppNode, parent: CppNode) -> list[_Write] | Unknown:
-        operator = parent.child("operator")
-        if operator is None or operator.text != "=" or not _is_statement(parent):
+    def _effect_of_assignment(self, node: CppNode, parent: CppNode) -> _Writes:
+        if parent.child("operator").text != "=" or not _is_statement(parent):
             return not_known("it is computed")
         return [_Write("set", node, self.evaluate_node(parent.child("right")))]
 
-    def _effect_of_method(
-        self, node: CppNode, parent: CppNode, declaration: CppNode | None
-    ) -> list[_Write] | Unknown:
+    def _effect_of_method(self, node: CppNode, parent: CppNode, declaration: CppNode) -> _Writes:
         """Return the effect of a method on a variable.
 
         A method that is called in a statement after the declaration is part of its value.
         """
-        call, field = parent.parent, parent.child("field")
-        name = field.text if field is not None else ""
-        is_called = call is not None and call.kind == "call_expression"
+        call = parent.parent
+        name = parent.child("field").text
+        is_called = call.kind == "call_expression"
         if is_called and name in _READING_METHODS:
             return []
-        if not is_called or declaration is None or call is None or not _is_statement(call):
-            return not_known("a method may change it")
-        if not call.parent or call.parent.parent is not declaration.parent:
+        is_local = declaration and call.parent.parent is declaration.parent
+        if not is_called or not is_local or not _is_statement(call):
             return not_known("a method may change it")
         arguments = [self.evaluate_node(argument) for argument in list_arguments(call)]
         return [_Write("set", node, CppCall(name, arguments, call, (), _BEFORE))]
@@ -479,8 +472,8 @@ class CppEvaluation:
             if node.kind == "init_declarator":
                 value = node.child("value")
                 kinds = (*TEXTS, *NUMBERS, "concatenated_string")
-                is_read = syntax.error is None and not syntax.broken
-                if value is not None and value.kind in kinds and is_read:
+                is_read = not syntax.error and not syntax.broken
+                if value.kind in kinds and is_read:
                     return self.evaluate_node(value)
         return not_known("the macro is not evaluated")
 
@@ -523,7 +516,8 @@ def _last(writes: Sequence[_Write]) -> CppValue:
         elif is_set or (write.kind == "set" and not _is_unconditional(write.node)):
             return not_known("it is set twice")
         else:
-            value, is_set = write.value, write.kind == "set"
+            value = write.value
+            is_set = write.kind == "set"
     return value if writes else not_known("it has no value")
 
 
@@ -531,19 +525,15 @@ def _is_unconditional(node: CppNode) -> bool:
     """Return whether a statement is one of the body of its function itself."""
     for around in node.ancestors():
         if around.kind == "compound_statement":
-            above = around.parent
-            return above is not None and above.kind in ("function_definition", "lambda_expression")
+            return around.parent.kind in ("function_definition", "lambda_expression")
     return True
 
 
 def _is_statement(node: CppNode) -> bool:
     """Return whether an expression is an always executed statement of its function's body."""
     statement = node.parent
-    if statement is None or statement.kind != "expression_statement":
-        return False
-    body = statement.parent
-    above = body.parent if body is not None else None
-    if above is None or above.kind != "function_definition":
+    above = statement.parent.parent
+    if statement.kind != "expression_statement" or above.kind != "function_definition":
         return False
     return not is_conditional(node, above)
 
@@ -551,10 +541,8 @@ def _is_statement(node: CppNode) -> bool:
 def is_member_of_this(use: CppNode) -> bool:
     """Return whether a name is that of a member in `this->name`."""
     parent = use.parent
-    if parent is None or parent.kind != "field_expression" or use.field != "field":
-        return False
-    owner = parent.child("argument")
-    return owner is not None and owner.kind == "this"
+    is_member = parent.kind == "field_expression" and use.field == "field"
+    return is_member and parent.child("argument").kind == "this"
 
 
 def _is_read(node: CppNode, parent: CppNode) -> bool:
@@ -567,10 +555,9 @@ def _is_read(node: CppNode, parent: CppNode) -> bool:
     return is_source or parent.kind in _READING_PARENTS
 
 
-def _is_plain(name: str) -> bool:
-    """Return whether a type is that of a text or number."""
-    words = ("string", "char", "int", "double", "float", "bool", "size_t", "auto")
-    return name.rpartition("::")[2] in words
+def _as_declared(value: CppValue, declaration: CppNode) -> CppValue:
+    """Return the number in a variable as the type of its declaration has it."""
+    return as_scalar(value, plain_name(declaration.child("type")))
 
 
 def _is_textual(value: CppValue) -> bool:
@@ -585,7 +572,7 @@ def _joined(values: Sequence[CppValue]) -> CppValue:
     size = sum(len(part) for part in parts if isinstance(part, str))
     if size > _MAX_TEXT or len(parts) > _MAX_PARTS:
         return not_known("the text is too long")
-    if all(isinstance(part, str) for part in parts):
+    if are_texts(parts):
         return "".join(parts)
     return CppSum(parts)
 

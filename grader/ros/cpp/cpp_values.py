@@ -1,11 +1,16 @@
 """The values of C++ expressions: Python's own for literals and lists, and recorded calls."""
 
 from collections.abc import Sequence
+from math import isfinite
 from typing import Any
 
+from grader.base.grouping import Strings
+from grader.ros.cpp.declarations import short_name
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.python.parse import START
 from grader.ros.python.values import Unknown
+
+INTEGERS = ("int", "uint", "size_t", "long", "unsigned", "short")  # how the names of types begin
 
 # A str, int, float, bool, list, CppName, CppCall, CppSum or Unknown.
 CppValue = Any
@@ -18,7 +23,8 @@ class CppName:
     """
 
     def __init__(self, name: str, node: CppNode) -> None:
-        self.name, self.node = name, node
+        self.name = name
+        self.node = node
 
 
 class CppCall:
@@ -32,16 +38,19 @@ class CppCall:
         name: str,
         args: Sequence[CppValue],
         node: CppNode,
-        types: tuple[str, ...] = (),
+        types: Strings = (),
         owner: CppValue = None,
     ) -> None:
-        self.name, self.args, self.node = name, tuple(args), node
-        self.types, self.owner = types, owner
+        self.name = name
+        self.args = tuple(args)
+        self.node = node
+        self.types = types
+        self.owner = owner
 
     @property
     def short(self) -> str:
         """The name without namespaces and classes."""
-        return self.name.rpartition("::")[2]
+        return short_name(self.name)
 
     def argument(self, position: int) -> CppValue:
         """Return an argument; None where it is missing."""
@@ -49,7 +58,7 @@ class CppCall:
 
 
 class CppSum:
-    """Texts that are joined with +, of which not all are known."""
+    """Strings that are joined with +, of which not all are known."""
 
     def __init__(self, parts: Sequence[CppValue]) -> None:
         self.parts = tuple(parts)
@@ -58,3 +67,15 @@ class CppSum:
 def not_known(reason: str) -> Unknown:
     """Return a value that is not known, for a reason that is part of a sentence."""
     return Unknown(reason, START)
+
+
+def as_scalar(value: CppValue, kind: str) -> CppValue:
+    """Return a number as a type has it, such as 10.0 for `double range = 10`."""
+    name = short_name(kind)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+        return value
+    if name in ("double", "float"):
+        return float(value)
+    if name == "bool":
+        return bool(value)
+    return int(value) if name.startswith(INTEGERS) else value

@@ -1,19 +1,22 @@
 """What one C++ file declares: includes, classes, functions, variables, other names and macros."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from functools import cached_property
 from itertools import islice
 from typing import NamedTuple
 
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
 from grader.base.source import Location
 from grader.ros.cpp.syntax import (
+    NO_NODE,
     CppNode,
     CppNodes,
     CppSyntax,
 )
 
-_NOT_PLAIN = re.compile(r"[<>\s]")  # in a name
+_NOT_PLAIN = on_use(r"[<>\s]")  # in a name
 CONDITIONS = (
     "preproc_if",
     "preproc_ifdef",
@@ -24,6 +27,7 @@ CONDITIONS = (
 _CLASSES = ("class_specifier", "struct_specifier")
 _CONSTANTS = ("const", "constexpr", "constinit")
 _CALLS = ("call_expression", "new_expression", "init_declarator", "declaration", "this")
+_MAX_SCOPES = 64  # namespaces in each other, whose names are joined
 _VARIABLES = (
     "declaration",
     "parameter_declaration",
@@ -38,7 +42,7 @@ class CppClass(NamedTuple):
     """A class that is defined: its full name, and its bases as they are written."""
 
     name: str
-    bases: tuple[str, ...]
+    bases: Strings
     node: CppNode
     is_conditional: bool
     is_template: bool
@@ -48,28 +52,33 @@ class CppFunction(NamedTuple):
     """A function that is defined.
 
     `owner` is the class or namespace that its name begins with, as it is written, or the full name
-    of the class around it.
+    of the class around it. `class_name` is the full name of the class that it is a method of; the
+    unit knows it.
     """
 
     name: str
     owner: str
-    scopes: tuple[str, ...]  # the namespaces and classes around it
+    scopes: Strings  # the namespaces and classes around it
     node: CppNode
     is_conditional: bool
     is_template: bool
+    class_name: str = ""
 
     @property
-    def body(self) -> CppNode | None:
+    def inner_scopes(self) -> Strings:
+        """The namespaces and classes in which the names in it are searched."""
+        return tuple(self.class_name.split("::")) if self.class_name else self.scopes
+
+    @property
+    def body(self) -> CppNode:
         """Its statements."""
         return self.node.child("body")
 
     @property
     def parameters(self) -> CppNodes:
         """Its parameters, in their order."""
-        declarator = _function_declarator(self.node)
-        parameter_list = declarator.child("parameters") if declarator is not None else None
         kinds = ("parameter_declaration", "optional_parameter_declaration")
-        return parameter_list.of_kind(*kinds) if parameter_list is not None else []
+        return _function_declarator(self.node).child("parameters").of_kind(*kinds)
 
 
 class CppVariable(NamedTuple):
@@ -78,14 +87,15 @@ class CppVariable(NamedTuple):
     name: str  # in full
     declarator: CppNode  # of its name
     type: str  # as it is written
-    value: CppNode | None
+    value: CppNode
     is_constant: bool
     is_conditional: bool
 
 
 class CppMacro(NamedTuple):
-    """A macro without parameters, by the text that it stands for."""
+    """A macro without parameters, and the text that it stands for."""
 
+    name: str
     text: str
     node: CppNode
     is_conditional: bool
@@ -103,18 +113,15 @@ class CppFile:
         # Other names for types and namespaces, in full, each with the name that they stand for.
         self.aliases: list[tuple[str, str]] = []
         self.opened: list[str] = []  # what `using namespace` names
-        self.macros: dict[str, list[CppMacro]] = {}
+        self.macros: list[CppMacro] = []
         self.called_macros: dict[str, str] = {}  # those with parameters, and their texts
         _Reader(self).read()
 
     @cached_property
-    def uses(self) -> Mapping[str, Sequence[CppNode]]:
-        """Where each name of a variable, function or member is written."""
-        nodes_by_name: dict[str, CppNodes] = {}
-        for node in self.syntax.nodes:
-            if node.kind in ("identifier", "field_identifier") or is_argument(node):
-                nodes_by_name.setdefault(node.text, []).append(node)
-        return nodes_by_name
+    def uses(self) -> CppNodes:
+        """The names of variables, functions and members, in the order of the text."""
+        names = ("identifier", "field_identifier")
+        return [node for node in self.syntax.nodes if node.kind in names or is_argument(node)]
 
     @cached_property
     def words(self) -> frozenset[str]:
@@ -129,8 +136,8 @@ class CppFile:
                 yield node
 
     @cached_property
-    def _comments(self) -> Sequence[CppNode]:
-        return [*self.of_kind("comment")]
+    def _comments(self) -> CppNodes:
+        return list(self.of_kind("comment"))
 
     def found(self, pattern: re.Pattern[str]) -> Iterator[tuple[str, Location]]:
         """Yield what the first group of a pattern matches outside of comments, and its place."""
@@ -140,7 +147,7 @@ class CppFile:
                 yield match[1], self.syntax.source.at(match.start(1))
 
     @cached_property
-    def calls(self) -> Sequence[CppNode]:
+    def calls(self) -> CppNodes:
         """The calls and what makes objects, in the order of the text."""
         return [node for node in self.syntax.nodes if node.kind in _CALLS]
 
@@ -148,13 +155,16 @@ class CppFile:
 class _Around(NamedTuple):
     """Where a declaration is: in which scopes, and under what."""
 
-    scopes: tuple[str, ...] = ()
+    scopes: Strings = ()
     is_class: bool = False
     is_conditional: bool = False
     is_template: bool = False
 
     def full(self, name: str) -> str:
         return "::".join((*self.scopes, name))
+
+
+_Inner = Iterator[tuple[CppNode, _Around]]  # declarations in another one, each with its place
 
 
 class _Reader:
@@ -167,18 +177,18 @@ class _Reader:
         pending = [(node, _Around()) for node in reversed(self.file.syntax.root.children)]
         while pending:
             node, place = pending.pop()
-            pending += reversed([*self._read(node, place)])
+            pending += reversed(list(self._read(node, place)))
 
-    def _read(self, node: CppNode, place: _Around) -> Iterator[tuple[CppNode, _Around]]:
+    def _read(self, node: CppNode, place: _Around) -> _Inner:
         """Read a declaration; yield those in it."""
         if node.kind in _DECLARATIONS:
             _DECLARATIONS[node.kind](self, node, place)
         if node.kind in _CLASSES:
             yield from self._read_class(node, place)
         elif node.kind == "namespace_definition":
-            name = _text(node.child("name"))
+            name = node.child("name").text
             inner = (*place.scopes, *name.split("::")) if name else place.scopes
-            yield from _inside(node.child("body"), place._replace(scopes=inner))
+            yield from _inside(node.child("body"), place._replace(scopes=inner[:_MAX_SCOPES]))
         elif node.kind == "linkage_specification":
             yield from _inside(node, place)
             yield from _inside(node.child("body"), place)
@@ -190,24 +200,23 @@ class _Reader:
             yield from _inside(node, place)
         elif node.kind in ("declaration", "field_declaration", "type_definition"):
             kind = node.child("type")
-            if kind is not None and kind.kind in _CLASSES:
+            if kind.kind in _CLASSES:
                 yield kind, place
 
     def read_include(self, node: CppNode, _: _Around) -> None:
         """Read an #include."""
-        path = node.child("path")
-        self.file.includes.append(path.text[1:-1] if path is not None else "")
+        self.file.includes.append(node.child("path").text[1:-1])
 
     def read_called_macro(self, node: CppNode, _: _Around) -> None:
         """Read a macro with parameters."""
-        self.file.called_macros[_text(node.child("name"))] = _text(node.child("value"))
+        self.file.called_macros[node.child("name").text] = node.child("value").text
 
     def read_macro(self, node: CppNode, place: _Around) -> None:
         """Read a macro without parameters."""
-        name, value = node.child("name"), node.child("value")
-        if name is not None:
-            macro = CppMacro(_text(value).strip(), node, place.is_conditional)
-            self.file.macros.setdefault(name.text, []).append(macro)
+        name = node.child("name")
+        if name:
+            text = node.child("value").text.strip()
+            self.file.macros.append(CppMacro(name.text, text, node, place.is_conditional))
 
     def read_using(self, node: CppNode, place: _Around) -> None:
         """Read a `using` of a name or of a namespace."""
@@ -216,26 +225,28 @@ class _Reader:
         if "namespace" in words:
             self.file.opened.append(name)
         else:
-            self.file.aliases.append((place.full(name.rpartition("::")[2]), name))
+            self.file.aliases.append((place.full(short_name(name)), name))
 
     def add_alias(self, node: CppNode, place: _Around) -> None:
         """Add another name for a type or a namespace."""
-        name, kind = node.child("name"), node.child("type")
-        if kind is None:
-            kind = next((child for child in node.children if child is not name), None)
-        if name is not None and kind is not None:
+        name = node.child("name")
+        kind = node.child("type")
+        if not kind:
+            kind = next((child for child in node.children if child is not name), NO_NODE)
+        if name and kind:
             self.file.aliases.append((place.full(name.text), plain(kind.text)))
 
     def read_typedef(self, node: CppNode, place: _Around) -> None:
         """Read a typedef."""
         kind = node.child("type")
         for declarator in node.children:
-            if declarator.field == "declarator" and kind is not None:
+            if declarator.field == "declarator" and kind:
                 self.file.aliases.append((place.full(declarator.text), plain(kind.text)))
 
-    def _read_class(self, node: CppNode, place: _Around) -> Iterator[tuple[CppNode, _Around]]:
-        name, body = node.child("name"), node.child("body")
-        if name is None or body is None:
+    def _read_class(self, node: CppNode, place: _Around) -> _Inner:
+        name = node.child("name")
+        body = node.child("body")
+        if not name or not body:
             return
         bases = []
         for clause in node.of_kind("base_class_clause"):
@@ -250,9 +261,8 @@ class _Reader:
 
     def read_function(self, node: CppNode, place: _Around) -> None:
         """Read a function or method that is defined."""
-        declarator = _function_declarator(node)
-        name = declarator.child("declarator") if declarator is not None else None
-        if name is None:
+        name = _function_declarator(node).child("declarator")
+        if not name:
             return
         owner, _, last = plain(name.text).rpartition("::")
         if not owner and place.is_class:
@@ -270,15 +280,20 @@ class _Reader:
             variable = CppVariable(
                 name=place.full(name.text),
                 declarator=name,
-                type=_text(type_node),
+                type=type_node.text,
                 value=value,
                 is_constant=is_constant(node),
                 is_conditional=place.is_conditional,
             )
             self.file.variables.append(variable)
+        if place.is_class and node.child("default_value"):  # it runs before the constructor
+            owner = "::".join(place.scopes)
+            self.file.functions.append(
+                CppFunction("", owner, place.scopes, node, place.is_conditional, place.is_template)
+            )
 
 
-_DECLARATIONS: dict[str, Callable[[_Reader, CppNode, _Around], None]] = {
+_DECLARATIONS = {
     "preproc_include": _Reader.read_include,
     "preproc_def": _Reader.read_macro,
     "preproc_function_def": _Reader.read_called_macro,
@@ -292,19 +307,19 @@ _DECLARATIONS: dict[str, Callable[[_Reader, CppNode, _Around], None]] = {
 }
 
 
-def _inside(node: CppNode | None, place: _Around) -> Iterator[tuple[CppNode, _Around]]:
-    for child in node.children if node is not None else ():
+def _inside(node: CppNode, place: _Around) -> _Inner:
+    for child in node.children:
         yield child, place
 
 
 def is_guard(node: CppNode) -> bool:
     """Return whether a condition only prevents that a header is read twice."""
     name = node.child("name")
-    is_outermost = node.parent is not None and node.parent.parent is None
-    if node.kind != "preproc_ifdef" or name is None or not is_outermost:
+    is_outermost = node.parent is node.file.root
+    if node.kind != "preproc_ifdef" or not name or not is_outermost:
         return False
     defined = node.of_kind("preproc_def")
-    return bool(defined) and _text(defined[0].child("name")) == name.text
+    return bool(defined) and defined[0].child("name").text == name.text
 
 
 def is_constant(declaration: CppNode) -> bool:
@@ -312,16 +327,18 @@ def is_constant(declaration: CppNode) -> bool:
     return any(qualifier.text in _CONSTANTS for qualifier in declaration.of_kind("type_qualifier"))
 
 
-def declared_in(declaration: CppNode) -> Iterator[tuple[CppNode, CppNode | None]]:
+def declared_in(declaration: CppNode) -> Iterator[tuple[CppNode, CppNode]]:
     """Yield the variables that a declaration declares: the node of each name, and its value."""
     value = declaration.child("default_value")
     for child in declaration.children:
         if child.field != "declarator":
             continue
-        name, given = name_in(child), child.child("parameters")
-        if given is not None and given.children and all(map(_is_given, given.children)):
-            name, value = child.child("declarator"), given
-        if name is not None:
+        name = name_in(child)
+        given = child.child("parameters")
+        if given.children and all(map(_is_given, given.children)):
+            name = child.child("declarator")
+            value = given
+        if name:
             yield name, child.child("value") if child.kind == "init_declarator" else value
 
 
@@ -337,56 +354,53 @@ def is_argument(node: CppNode) -> bool:
     """
     parent = node.parent
     is_name = node.kind in ("type_identifier", "qualified_identifier")
-    if not is_name or parent is None or parent.kind != "parameter_declaration":
+    if not is_name or parent.kind != "parameter_declaration":
         return False
     around = list(islice(node.ancestors(), 5))
     return len(around) == 5 and around[4].kind == "compound_statement" and len(parent.children) == 1
 
 
-def find_declaration(name: CppNode) -> CppNode | None:
+def find_declaration(name: CppNode) -> CppNode:
     """Return the declaration that declares a name as a local variable or a parameter.
 
-    Returns None for a name that is used.
+    Returns NO_NODE for a name that is used.
     """
     node = name
     for around in name.ancestors():
         if around.kind in _VARIABLES:
             is_declared = any(declared is name for declared, _ in declared_in(around))
-            return around if is_declared else None
+            return around if is_declared else NO_NODE
         if node.field == "value" or around.kind in ("argument_list", "compound_statement"):
-            return None
+            break
         node = around
-    return None
+    return NO_NODE
 
 
-def name_in(declarator: CppNode) -> CppNode | None:
-    """Return the name that a declarator declares; None for a function, or without one."""
-    node: CppNode | None = declarator
-    while node is not None and node.kind not in (*_NAMES, "qualified_identifier"):
+def name_in(declarator: CppNode) -> CppNode:
+    """Return the name that a declarator declares; NO_NODE for a function, or without one."""
+    node = declarator
+    while node and node.kind not in (*_NAMES, "qualified_identifier"):
         if node.kind in ("function_declarator", "abstract_function_declarator"):
-            return None
-        inner = node.child("declarator")
-        if inner is None:
-            names = node.of_kind(*_NAMES)
-            inner = names[0] if names else next(iter(node.children), None)
-        node = inner
+            return NO_NODE
+        names = node.of_kind(*_NAMES)
+        node = node.child("declarator") or (names[0] if names else node.first)
     return node
 
 
-def _function_declarator(function: CppNode) -> CppNode | None:
+def _function_declarator(function: CppNode) -> CppNode:
     """Return the declarator of a function with its name and parameters."""
     node = function.child("declarator")
-    while node is not None and node.kind != "function_declarator":
-        inner = node.child("declarator")
-        node = inner if inner is not None else next(iter(node.children), None)
+    while node and node.kind != "function_declarator":
+        node = node.child("declarator") or node.first
     return node
 
 
 def plain(name: str) -> str:
     """Return a name without white space, the arguments of templates and :: at its start."""
-    if _NOT_PLAIN.search(name) is None:
+    if not _NOT_PLAIN.search(name):
         return name.removeprefix("::")
-    depth, kept = 0, []
+    depth = 0
+    kept = []
     for letter in name:
         depth += (letter == "<") - (letter == ">")
         if depth == 0 and letter != ">" and not letter.isspace():
@@ -394,10 +408,11 @@ def plain(name: str) -> str:
     return "".join(kept).removeprefix("::")
 
 
+def short_name(name: str) -> str:
+    """Return a name without the namespaces and classes before it."""
+    return name.rpartition("::")[2]
+
+
 def plain_name(node: CppNode) -> str:
     """Return the name that a node is, without the arguments of templates."""
     return plain(node.text)
-
-
-def _text(node: CppNode | None) -> str:
-    return node.text if node is not None else ""

@@ -3,17 +3,18 @@
 import re
 from collections.abc import Mapping
 
+from grader.base.patterns import on_use
 from grader.ros.cpp.syntax import CppNode
 
 TEXTS = ("string_literal", "raw_string_literal")
 NUMBERS = ("number_literal", "true", "false")
-_RAW = re.compile(r'(?:u8|[uUL])?R"([^()\\\s]{0,16})\((.*)\)\1"', re.DOTALL)
-_ESCAPE = re.compile(
+_RAW = on_use(r'(?:u8|[uUL])?R"([^()\\\s]{0,16})\((.*)\)\1"', re.DOTALL)
+_ESCAPE = on_use(
     rb"\\(?:\r?\n|([0-7]{1,3})|x([0-9A-Fa-f]+)|u([0-9A-Fa-f]{4})|U([0-9A-Fa-f]{8})|(.))", re.DOTALL
 )
 _PLAIN = {b"n": b"\n", b"t": b"\t", b"r": b"\r", b"a": b"\a", b"b": b"\b", b"f": b"\f", b"v": b"\v"}
-_INTEGER = re.compile(r"(0[xX][0-9A-Fa-f]+|0[bB][01]+|[0-9]+)(?:[uU]?(?:ll|LL|[lLzZ])?[uU]?)")
-_FLOATING = re.compile(
+_INTEGER = on_use(r"(0[xX][0-9A-Fa-f]+|0[bB][01]+|[0-9]+)(?:[uU]?(?:ll|LL|[lLzZ])?[uU]?)")
+_FLOATING = on_use(
     r"((?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[0-9]+[eE][+-]?[0-9]+)[fFlL]?"
 )
 # Seconds in a unit of std::chrono, by the endings of its literals.
@@ -32,9 +33,10 @@ def text_of_literal(node: CppNode) -> str | None:
     """Return the text of a string literal; None where it is broken."""
     written = node.text
     raw = _RAW.fullmatch(written)
-    if raw is not None:
+    if raw:
         return raw[2].replace("\r\n", "\n")
-    start, end = written.find('"'), len(written) - 1
+    start = written.find('"')
+    end = len(written) - 1
     if start < 0 or end <= start or written[end] != '"':
         return None
     inside = written[start + 1 : end].encode("utf-8", "replace")
@@ -68,7 +70,7 @@ def number_of_literal(text: str) -> int | float | bool | None:
     if len(digits) > _MAX_DIGITS:
         return None
     whole = _INTEGER.fullmatch(digits)
-    if whole is not None:
+    if whole:
         written = whole[1]
         is_octal = len(written) > 1 and written.isdigit() and written.startswith("0")
         try:
@@ -76,4 +78,4 @@ def number_of_literal(text: str) -> int | float | bool | None:
         except ValueError:
             return None
     floating = _FLOATING.fullmatch(digits)
-    return float(floating[1]) if floating is not None else None
+    return float(floating[1]) if floating else None

@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from functools import cache
 from typing import TYPE_CHECKING
 
+from grader.base.grouping import Span
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source
 from grader.ros.python.budget import Budget, OutOfBudget
 
@@ -15,10 +17,11 @@ MAX_BYTES = 512 * 1024  # of a file
 _BYTES_A_PART = 2  # charged before a file is parsed
 # tree-sitter reports its progress after each 100 steps. 4,000 public files take one report for 200
 # bytes, the slowest one for 60; what takes more is not read.
-_BYTES_A_REPORT, _MIN_REPORTS = 60, 200
+_BYTES_A_REPORT = 60
+_MIN_REPORTS = 200
 _MAX_ATTRIBUTES = 500  # before one declaration, each step of the parser is as long as there are
 # Macros between a keyword and a name, or without a semicolon, which the grammar has no place for.
-_IGNORED = re.compile(
+_IGNORED = on_use(
     r"^[ \t]*#(?:[^\n]*\\\r?\n)*[^\n]*"
     r"|\b[A-Z][A-Z0-9_]*_(?:PUBLIC|EXPORT|IMPORT|LOCAL|API|VISIBILITY|PUBLIC_TYPE|HIDDEN)\b(?=\s+[A-Za-z_~:])"
     r"|\bRCLCPP_(?>\w*?PTR)(?>\w*?DEFINITIONS)\w*+\([^()\n]*\)"
@@ -29,7 +32,7 @@ _IGNORED = re.compile(
 )
 # `extern "C" {` for compilers of C++, whose brace another condition closes.
 _OF_CPP = r"^[ \t]*#[ \t]*if(?:def)?\b[^\n]{0,80}\b__cplusplus\b[^\n]{0,80}\n\s*"
-_LINKAGE = re.compile(
+_LINKAGE = on_use(
     rf'{_OF_CPP}(?:extern\s+"C"\s*\{{|\}})[ \t]*(?://[^\n]*|/\*[^*\n]*\*/)?\s*#[ \t]*endif\b',
     re.MULTILINE,
 )
@@ -47,7 +50,7 @@ class CppNode:
 
     `field` is its role in its parent: `name`, `body`. Of punctuation only what has a role is kept.
     `index` is its place among the nodes of the file, `behind` the place after the last node in it.
-    `called` is the name of what a call calls, once it is asked for.
+    `called` is the name of what a call calls, once it is asked for. The root is its own parent.
     """
 
     __slots__ = (
@@ -68,22 +71,36 @@ class CppNode:
         file: "CppSyntax",
         kind: str,
         field: str | None,
-        span: tuple[int, int],
+        span: Span,
         parent: "CppNode | None",
     ) -> None:
         """`span` are the bytes that it begins and ends at."""
-        self.file, self.kind, self.field, self.parent = file, kind, field, parent
+        self.file = file
+        self.kind = kind
+        self.field = field
+        self.parent = parent or self
         self.start, self.end = span
         self.children: list[CppNode] = []
         self.index = self.behind = len(file.nodes)
         self.called: str | None = None
 
-    def child(self, field: str) -> "CppNode | None":
-        """Return the first child with a role."""
-        for child in self.children:
-            if child.field == field:
-                return child
-        return None
+    def __bool__(self) -> bool:
+        """Whether it is a node: NO_NODE is none."""
+        return self.kind != ""
+
+    def child(self, field: str) -> "CppNode":
+        """Return the first child with a role; NO_NODE without one."""
+        return next((child for child in self.children if child.field == field), NO_NODE)
+
+    @property
+    def first(self) -> "CppNode":
+        """The first child; NO_NODE without one."""
+        return self.children[0] if self.children else NO_NODE
+
+    @property
+    def code(self) -> "list[CppNode]":
+        """The children without comments."""
+        return [child for child in self.children if child.kind != "comment"]
 
     def of_kind(self, *kinds: str) -> "list[CppNode]":
         """Return the children of these kinds."""
@@ -105,13 +122,14 @@ class CppNode:
 
     def ancestors(self) -> "Iterator[CppNode]":
         """Yield the nodes around it, the innermost first."""
-        node = self.parent
-        while node is not None:
-            yield node
+        node = self
+        while node.parent is not node:
             node = node.parent
+            yield node
 
 
 CppNodes = list[CppNode]
+CppNodesByName = dict[str, CppNodes]
 
 
 class CppSyntax:
@@ -134,7 +152,7 @@ class CppSyntax:
 
     def add(self, node: CppNode) -> None:
         """Add a node to its parent, and behind the nodes that the file has."""
-        if node.parent is not None:
+        if node.parent is not node:
             node.parent.children.append(node)
         self.nodes.append(node)
         node.behind = len(self.nodes)
@@ -144,6 +162,10 @@ class CppSyntax:
         if len(self.data) == len(self.source.text):
             return self.source.at(at)
         return self.source.at(len(self.data[:at].decode("utf-8", "replace")))
+
+
+# What stands for a node that is missing: it has no kind, text or children.
+NO_NODE = CppNode(CppSyntax("", ""), "", None, (0, 0), None)
 
 
 def parse_cpp(data: bytes, path: str, budget: Budget) -> CppSyntax:
@@ -186,7 +208,7 @@ def parse_cpp(data: bytes, path: str, budget: Budget) -> CppSyntax:
 def _add_error(syntax: CppSyntax, error: CppNode) -> None:
     """Add a text that is no C++: it leaves open the statement around it, or else the file."""
     statement = error
-    if error.start == error.end and error.parent is not None:  # it is missing
+    if error.start == error.end:  # it is missing
         statement = error.parent
     for around in statement.ancestors():
         if around.kind in _HOLDERS and statement.field not in ("condition", "name"):
@@ -197,7 +219,7 @@ def _add_error(syntax: CppSyntax, error: CppNode) -> None:
     is_alone = all(around.kind != "ERROR" for around in statement.ancestors())
     if is_alone and _is_balanced(statement):
         syntax.broken.append(statement)
-    elif syntax.error is None:
+    elif not syntax.error:
         syntax.error = error.location
 
 
@@ -208,7 +230,7 @@ def _is_balanced(statement: CppNode) -> bool:
         if node.kind in _TEXTS:
             length = node.end - node.start
             data[node.start - statement.start : node.end - statement.start] = b" " * length
-    opened: list[str] = []
+    opened = []
     for letter in data.decode("latin-1"):
         if letter in "([{":
             opened.append(letter)
@@ -252,7 +274,8 @@ def _copy(cursor: "TreeCursor", syntax: CppSyntax) -> CppNodes:
     if not cursor.goto_first_child():
         return errors
     while True:
-        node, field = cursor.node, cursor.field_name
+        node = cursor.node
+        field = cursor.field_name
         assert node is not None
         is_kept = node.is_named or field is not None
         if is_kept or has_errors:

@@ -5,6 +5,7 @@ from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
+from grader.base.grouping import Strings, group_values, only_one
 from grader.ros.cpp.declarations import (
     CONDITIONS,
     CppClass,
@@ -14,12 +15,16 @@ from grader.ros.cpp.declarations import (
     CppVariable,
     is_guard,
     plain_name,
+    short_name,
 )
 from grader.ros.cpp.syntax import (
+    NO_NODE,
     CppNode,
     CppNodes,
     CppSyntax,
 )
+
+_Scopes = Sequence[str]
 
 _MAX_ALIASES = 10  # in a row
 _MAX_OPENED = 20  # namespaces
@@ -36,46 +41,42 @@ class CppUnit:
         self.files = tuple(files)
         opened = dict.fromkeys(name for file in files for name in file.opened)
         self.opened = tuple(opened)[:_MAX_OPENED]
-        self._meanings: dict[tuple[str, tuple[str, ...]], tuple[str, ...]] = {}
+        self._meanings: dict[tuple[str, Strings], Strings] = {}
 
     @cached_property
     def classes(self) -> Mapping[str, Sequence[CppClass]]:
         """The classes by their full names."""
-        by_name: dict[str, list[CppClass]] = {}
-        for file in self.files:
-            for each in file.classes:
-                by_name.setdefault(each.name, []).append(each)
-        return by_name
+        return group_values((each.name, each) for file in self.files for each in file.classes)
 
     @cached_property
     def functions(self) -> tuple[CppFunction, ...]:
         """The functions that are defined, with methods."""
-        return tuple(function for file in self.files for function in file.functions)
+        functions = [function for file in self.files for function in file.functions]
+        return tuple(each._replace(class_name=self._find_class(each)) for each in functions)
+
+    @cached_property
+    def mains(self) -> Sequence[CppFunction]:
+        """The functions main()."""
+        return [each for each in self.functions if each.name == "main" and not each.owner]
 
     @cached_property
     def functions_by_name(self) -> Mapping[str, Sequence[CppFunction]]:
         """The functions that are defined by their names, without the class that they are of."""
-        by_name: dict[str, list[CppFunction]] = {}
-        for function in self.functions:
-            by_name.setdefault(function.name, []).append(function)
-        return by_name
+        return group_values((function.name, function) for function in self.functions)
 
     @cached_property
     def _functions_by_file(self) -> Mapping[CppSyntax, Sequence[CppFunction]]:
         """The functions of each file, in their order; none is in another one."""
-        return {file.syntax: sorted(file.functions, key=_start) for file in self.files}
+        ordered = sorted(self.functions, key=_start)
+        return group_values((function.node.file, function) for function in ordered)
 
     @cached_property
     def variables(self) -> Mapping[str, Sequence[CppVariable]]:
         """The variables of namespaces and classes by their full names."""
-        by_name: dict[str, list[CppVariable]] = {}
-        for file in self.files:
-            for each in file.variables:
-                by_name.setdefault(each.name, []).append(each)
-        return by_name
+        return group_values((each.name, each) for file in self.files for each in file.variables)
 
     @cached_property
-    def _aliases(self) -> Mapping[str, Sequence[str]]:
+    def _aliases(self) -> Mapping[str, _Scopes]:
         by_name: dict[str, list[str]] = {}
         for file in self.files:
             for name, target in file.aliases:
@@ -87,27 +88,21 @@ class CppUnit:
     @cached_property
     def macros(self) -> Mapping[str, Sequence[CppMacro]]:
         """The macros without parameters by their names."""
-        by_name: dict[str, list[CppMacro]] = {}
-        for file in self.files:
-            for name, each in file.macros.items():
-                by_name.setdefault(name, []).extend(each)
-        return by_name
+        return group_values((each.name, each) for file in self.files for each in file.macros)
 
     @cached_property
-    def _called_macros(self) -> Mapping[str, Sequence[str]]:
+    def _called_macros(self) -> Mapping[str, _Scopes]:
         """The texts of the macros with parameters by their names."""
-        by_name: dict[str, list[str]] = {}
-        for file in self.files:
-            for name, text in file.called_macros.items():
-                by_name.setdefault(name, []).append(text)
-        return by_name
+        return group_values(
+            (name, text) for file in self.files for name, text in file.called_macros.items()
+        )
 
-    def texts_of_macro(self, name: str) -> Sequence[str]:
+    def texts_of_macro(self, name: str) -> _Scopes:
         """Return the texts that a macro which is called stands for, with or without parameters."""
         plain_macros = self.macros.get(name, ())
         return [*self._called_macros.get(name, ()), *(macro.text for macro in plain_macros)]
 
-    def meanings(self, name: str, scopes: Sequence[str] = ()) -> tuple[str, ...]:
+    def meanings(self, name: str, scopes: _Scopes = ()) -> Strings:
         """Return the full names that a name of a type may stand for, in these scopes.
 
         What is not defined in the files is itself, also in the namespaces that are opened.
@@ -117,7 +112,7 @@ class CppUnit:
             self._meanings[asked] = self._search_meanings(name, scopes)
         return self._meanings[asked]
 
-    def _search_meanings(self, name: str, scopes: Sequence[str]) -> tuple[str, ...]:
+    def _search_meanings(self, name: str, scopes: _Scopes) -> Strings:
         for _ in range(_MAX_ALIASES):
             target = self._resolve_alias(name, scopes)
             if target is None:
@@ -128,7 +123,7 @@ class CppUnit:
                 return (candidate,)
         return (name, *(f"{opened}::{name}" for opened in self.opened))
 
-    def _resolve_alias(self, name: str, scopes: Sequence[str]) -> str | None:
+    def _resolve_alias(self, name: str, scopes: _Scopes) -> str | None:
         """Return a name with its beginning replaced by what that stands for; None without one."""
         parts = name.split("::")
         for count in range(len(parts), 0, -1):
@@ -139,60 +134,57 @@ class CppUnit:
                     return "::".join((targets[0], *parts[count:]))
         return None
 
-    def _candidates(self, name: str, scopes: Sequence[str]) -> Iterator[str]:
+    def _candidates(self, name: str, scopes: _Scopes) -> Iterator[str]:
         for count in range(len(scopes), -1, -1):
             yield "::".join((*scopes[:count], name))
         for opened in self.opened:
             yield f"{opened}::{name}"
 
-    def variables_named(self, name: str, scopes: Sequence[str]) -> Sequence[CppVariable]:
+    def variables_named(self, name: str, scopes: _Scopes) -> Sequence[CppVariable]:
         """Return the variables that a name in these scopes means; several if it is defined so."""
         for candidate in self._candidates(name, scopes):
             if candidate in self.variables:
                 return self.variables[candidate]
         return ()
 
-    def find_owner(self, function: CppFunction) -> str:
+    def _find_class(self, function: CppFunction) -> str:
         """Return the full name of the class that a function is a method of; empty without one."""
         if not function.owner:
             return ""
         meanings = self.meanings(function.owner, function.scopes)
         return meanings[0] if meanings[0] in self.classes else ""
 
-    def list_scopes(self, function: CppFunction) -> tuple[str, ...]:
-        """Return the namespaces and classes in which the names of a function are searched."""
-        owner = self.find_owner(function)
-        return tuple(owner.split("::")) if owner else function.scopes
+    def scopes_at(self, node: CppNode) -> Strings:
+        """Return the scopes of the function that a place is in; none outside of functions."""
+        function = self.function_around(node)
+        return function.inner_scopes if function else ()
 
     @cached_property
-    def uses(self) -> Mapping[str, Sequence[CppNode]]:
+    def uses(self) -> Mapping[str, CppNodes]:
         """Where each name of a variable, function or member is written."""
-        by_name: dict[str, CppNodes] = {}
-        for file in self.files:
-            for name, nodes in file.uses.items():
-                by_name.setdefault(name, []).extend(nodes)
-        return by_name
+        return group_values((use.text, use) for file in self.files for use in file.uses)
 
-    def calls_in(self, function: CppFunction) -> Sequence[CppNode]:
+    def uses_in(self, function: CppFunction, name: str) -> CppNodes:
+        """Return where a name is written in a function."""
+        inside = function.node
+        uses = [use for use in self.uses.get(name, ()) if use.file is inside.file]
+        return [use for use in uses if inside.start <= use.start < inside.end]
+
+    def calls_in(self, function: CppFunction) -> CppNodes:
         """Return the calls in a function, and what else makes objects or is the object itself."""
-        return self._calls.get(function.node, ())
+        return self._calls.get(function.node, [])
 
     @cached_property
-    def _calls(self) -> Mapping[CppNode, Sequence[CppNode]]:
-        calls: dict[CppNode, CppNodes] = {}
-        for file in self.files:
-            for node in file.calls:
-                function = self.function_around(node)
-                if function is not None:
-                    calls.setdefault(function.node, []).append(node)
-        return calls
+    def _calls(self) -> Mapping[CppNode, CppNodes]:
+        calls = [(self.function_around(node), node) for file in self.files for node in file.calls]
+        return group_values((around.node, node) for around, node in calls if around)
 
     def function_around(self, node: CppNode) -> CppFunction | None:
         """Return the function that a place is in."""
         functions = self._functions_by_file.get(node.file, ())
         after = bisect_right(functions, node.start, key=_start)
         function = functions[after - 1] if after else None
-        if function is not None and node.start < function.node.end:
+        if function and node.start < function.node.end:
             return function
         return None
 
@@ -215,36 +207,49 @@ def called_name(call: CppNode) -> str:
     """Return the name of what a call calls, as it is written, without the object before it."""
     if call.called is None:
         name = call.child("function")
-        if name is not None and name.kind == "field_expression":
+        if name.kind == "field_expression":
             name = name.child("field")
-            if name is not None and name.kind == "dependent_name" and name.children:
-                name = name.children[0]  # behind the word `template`
-        call.called = plain_name(name) if name is not None else ""
+            if name.kind == "dependent_name":
+                name = name.first  # behind the word `template`
+        call.called = plain_name(name)
     return call.called
+
+
+def called_object(call: CppNode) -> CppNode:
+    """Return the object whose method is called; NO_NODE for a function."""
+    function = call.child("function")
+    return function.child("argument") if function.kind == "field_expression" else NO_NODE
+
+
+def is_given_to(node: CppNode, takers: _Scopes) -> bool:
+    """Return whether an expression is an argument of a function with one of these names."""
+    given = node.parent
+    call = node.parent.parent
+    if given.kind != "argument_list" or call.kind != "call_expression":
+        return False
+    return short_name(called_name(call)) in takers
 
 
 def list_arguments(call: CppNode) -> CppNodes:
     """Return the arguments of a call, of a constructor or of an initializer."""
     given = call.child("arguments")
-    if given is None:
+    if not given:
         lists = call.of_kind("argument_list", "initializer_list")
-        given = lists[0] if lists else None
-    if given is None:
-        return []
-    return [child for child in given.children if child.kind != "comment"]
+        given = lists[0] if lists else NO_NODE
+    return given.code
 
 
-def template_arguments(call: CppNode) -> tuple[str, ...]:
+def template_arguments(call: CppNode) -> Strings:
     """Return the arguments of the template that is called, as they are written."""
     node = call.child("function") if call.kind == "call_expression" else call
-    while node is not None:
+    while node:
         given = node.child("arguments")
-        if given is not None and given.kind == "template_argument_list":
-            return tuple(argument.text for argument in given.children if argument.kind != "comment")
-        if node.kind == "dependent_name" and node.children:
-            node = node.children[0]
-            continue
-        node = node.child("field") or node.child("name")
+        if given.kind == "template_argument_list":
+            return tuple(argument.text for argument in given.code)
+        if node.kind == "dependent_name":
+            node = node.first
+        else:
+            node = node.child("field") or node.child("name")
     return ()
 
 
@@ -264,4 +269,4 @@ def resolve_include(path: str, included: str, files: Mapping[str, object]) -> st
             return candidate
     headers = [file for file in files if file.startswith("include/") or "/include/" in file]
     elsewhere = [file for file in headers if file.endswith(f"/{included}")]
-    return elsewhere[0] if len(elsewhere) == 1 else None
+    return only_one(elsewhere)

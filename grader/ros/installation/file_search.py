@@ -4,7 +4,6 @@ The searches are those of glob, pathlib, os and setuptools. They find files in t
 files.
 """
 
-import posixpath
 import re
 import warnings
 from bisect import bisect_left
@@ -14,9 +13,12 @@ from functools import lru_cache, partial
 from io import StringIO
 from itertools import pairwise
 from pathlib import PurePosixPath
-from typing import NamedTuple
+from posixpath import join, normpath
 
 from grader.base.errors import InputError
+from grader.base.names import last_part
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.files.limits import ignored_part
 from grader.files.tree import IS_LINK, Tree
 from grader.ros.python.budget import Budget
@@ -34,13 +36,13 @@ from grader.ros.python.values import (
     path_text,
 )
 
+_Paths = list[str]
+
 # The file system lists a folder, and Python a set, in any order: a result that depends on the order
 # differs between these.
 ORDERS = ("sorted", "reversed", "rotated")
-_MAGIC = re.compile(r"[*?\[]")
-_SLASHES = re.compile(
-    r"(?<!/)//++(?=[^/]*[*?\[][^/]*$)"
-)  # those before other names are in the result
+_MAGIC = on_use(r"[*?\[]")
+_SLASHES = on_use(r"(?<!/)//++(?=[^/]*[*?\[][^/]*$)")  # those before other names are in the result
 _OUTSIDE = "it searches for files outside of the package"
 _IGNORED = "it searches an ignored folder"
 _UNUSUAL = "a pattern of this kind is not supported"
@@ -52,7 +54,7 @@ _GLOB_OPTIONS = ("pathname", "recursive", "root_dir", "include_hidden", "dir_fd"
 _MAX_READ = 128 * 1024  # bytes
 
 
-class EmptyGlob(NamedTuple):
+class EmptyGlob(Named):
     """A pattern that matches no file."""
 
     pattern: str
@@ -62,13 +64,13 @@ class EmptyGlob(NamedTuple):
 def _below(folder: str, name: str) -> str:
     """Return the path of a name in a folder. Raises Undetermined for one outside of the tree."""
     if name != "..":
-        return posixpath.join(folder, name)
+        return join(folder, name)
     if not folder:
         raise Undetermined(_OUTSIDE)
     return folder.rpartition("/")[0]
 
 
-def _parts_of_pattern(pattern: str) -> list[str]:
+def _parts_of_pattern(pattern: str) -> _Paths:
     """Return the parts of a pattern of pathlib. Raises Undetermined for one that nobody writes."""
     if pattern.startswith("/") or pattern.endswith(("/", "/.")):
         raise Undetermined(_UNUSUAL)
@@ -90,12 +92,12 @@ class PackageListing:
         self.budget = budget or Budget()
         self.files = tree.files
         self.folders = tree.folders | tree.unseen | {""}
-        self._unseen = {path for path in tree.unseen if path.rpartition("/")[2] != _COMPILED}
+        self._unseen = {path for path in tree.unseen if last_part(path) != _COMPILED}
         self._links = {*tree.links}
         self.order_matters = False  # whether a search has returned several names
         self.positions: dict[str, Position] = {}  # of the searches that found a path
         self.empty: dict[EmptyGlob, None] = {}  # in the order of the searches
-        self._children: dict[str, list[str]] = {}
+        self._children: dict[str, _Paths] = {}
         self._order = order
         paths = [*tree.files, *tree.folders, *tree.unseen]
         self._file_paths = sorted(tree.files)
@@ -111,7 +113,7 @@ class PackageListing:
             case "reversed":
                 return values[::-1]
             case "rotated":
-                return [*values[1:], *values[:1]]
+                return values[1:] + values[:1]
         return values
 
     def record(self, pattern: str, paths: list[Value], at: Position) -> list[Value]:
@@ -124,7 +126,7 @@ class PackageListing:
             self.empty[EmptyGlob(pattern, at)] = None
         return paths
 
-    def names(self, folder: str) -> list[str]:
+    def names(self, folder: str) -> _Paths:
         """Return the names in a folder. Raises Undetermined for an ignored folder."""
         if folder in self._unseen:
             raise Undetermined(_IGNORED)
@@ -132,9 +134,10 @@ class PackageListing:
         self.budget.charge(1 + len(names_in_folder))
         return names_in_folder
 
-    def files_below(self, folder: str) -> list[str]:
+    def files_below(self, folder: str) -> _Paths:
         """Return the paths of the files in a folder and in the folders of it."""
-        first, last = 0, len(self._file_paths)
+        first = 0
+        last = len(self._file_paths)
         if folder:
             first = bisect_left(self._file_paths, f"{folder}/")
             last = bisect_left(self._file_paths, f"{folder}0")  # the character after the slash
@@ -176,7 +179,7 @@ class PackageListing:
             return here
         return None
 
-    def glob(self, pattern: str, *, recursive: bool = False, above: str = "") -> list[str]:
+    def glob(self, pattern: str, *, recursive: bool = False, above: str = "") -> _Paths:
         """Return the paths that glob.glob finds, as it writes them. Raises Undetermined.
 
         `recursive` lets ** match any number of folders; `above` is the absolute path of the tree's
@@ -188,10 +191,10 @@ class PackageListing:
         parts = _SLASHES.sub("/", pattern.removeprefix("./")).split("/")
         paths = self._search(parts, recursive=recursive)
         if recursive and parts[-1] == "**":  # also the folder that it begins in
-            paths = [*self._search([*parts[:-1], ""]), *self._search([*parts, "*"], recursive=True)]
+            paths = self._search([*parts[:-1], ""]) + self._search([*parts, "*"], recursive=True)
         return [start + path for path in paths if start + path]
 
-    def path_glob(self, folder: str, pattern: str) -> list[str]:
+    def path_glob(self, folder: str, pattern: str) -> _Paths:
         """Return the paths below a folder that pathlib's glob finds in Python 3.12.
 
         Raises Undetermined.
@@ -201,14 +204,12 @@ class PackageListing:
         if start not in self.folders:
             return []
         folders_only = [""] if parts[-1] == "**" else []
-        paths = self._search(
-            [*parts, *folders_only], recursive=True, hidden=True, folder=start or ""
-        )
+        paths = self._search(parts + folders_only, recursive=True, hidden=True, folder=start or "")
         return [path.rstrip("/") for path in paths]
 
     def _search(
-        self, parts: list[str], *, recursive: bool = False, hidden: bool = False, folder: str = ""
-    ) -> list[str]:
+        self, parts: _Paths, *, recursive: bool = False, hidden: bool = False, folder: str = ""
+    ) -> _Paths:
         """Return the paths below a folder that consist of such names.
 
         With an empty name at the end, they are those of folders.
@@ -228,7 +229,7 @@ class PackageListing:
         return self.ordered(["/".join(names) for names in fitting])
 
 
-def _is_unusual(parts: list[str], *, recursive: bool) -> bool:
+def _is_unusual(parts: _Paths, *, recursive: bool) -> bool:
     """Return whether a pattern is one that nobody writes, so that it is not evaluated."""
     is_hidden = any(part.startswith(".") for part in parts)
     if recursive and "**" in parts and (is_hidden or parts.count("**") > 1):
@@ -238,13 +239,13 @@ def _is_unusual(parts: list[str], *, recursive: bool) -> bool:
     return sum(map(len, parts)) > _MAX_PATTERN
 
 
-class _Pattern(NamedTuple):
+class _Pattern(Named):
     """The tests of the names in a path; the one at `place` is that of any number of folders."""
 
     tests: list[Callable[[str], object]]
     place: int | None
 
-    def matches(self, names: list[str]) -> bool:
+    def matches(self, names: _Paths) -> bool:
         """Return whether a path matches."""
         tests = self.tests
         if self.place is not None:
@@ -254,17 +255,17 @@ class _Pattern(NamedTuple):
             test(name) for test, name in zip(tests, names, strict=True)
         )
 
-    def leads_to(self, names: list[str]) -> bool:
+    def leads_to(self, names: _Paths) -> bool:
         """Return whether a search looks into a folder."""
         tests = self.tests[:-1]
         if self.place is not None:
-            tests = [*tests[: self.place], *[self.tests[self.place]] * len(names)]
+            tests = tests[: self.place] + [self.tests[self.place]] * len(names)
         return len(names) <= len(tests) and all(
             test(name) for test, name in zip(tests, names, strict=False)
         )
 
 
-def _names_below(start: str, paths: Iterable[str]) -> Iterator[list[str]]:
+def _names_below(start: str, paths: Iterable[str]) -> Iterator[_Paths]:
     """Yield the names in each path below a folder."""
     return (path.removeprefix(start).split("/") for path in paths if path.startswith(start))
 
@@ -325,13 +326,13 @@ def _evaluate_search(
     call: Call,
 ) -> Value:
     """Evaluate a search, charge it and record whether the order of files in a folder matters."""
-    known([call.args, [*call.kwargs.values()]])
+    known([call.args, list(call.kwargs.values())])
     result = function(evaluation, call)
     listing.order_matters |= isinstance(result, list) and len(result) > 1
     return result
 
 
-class _PackageFolder(NamedTuple):
+class _PackageFolder(Named):
     """The package's folder, as the functions see it."""
 
     listing: PackageListing
@@ -352,12 +353,13 @@ class _PackageFolder(NamedTuple):
         """Return the file or folder at a path; None where there is nothing. Raises Undetermined."""
         path = self.inside(value)
         real = self.listing.real(path)
-        if real is None and ignored_part(posixpath.normpath(path)):
+        if real is None and ignored_part(normpath(path)):
             raise Undetermined(f"{path} is an ignored file")
         return real
 
     def glob(self, _: Evaluation, call: Call) -> Value:
-        pattern, recursive = call.argument(0, "pathname"), call.kwargs.get("recursive", False)
+        pattern = call.argument(0, "pathname")
+        recursive = call.kwargs.get("recursive", False)
         if isinstance(pattern, PurePosixPath):
             raise EvaluationFails(
                 "glob takes a string, and this is a path: write str(...) around it"
@@ -416,7 +418,7 @@ class _PackageFolder(NamedTuple):
         if real is None:
             raise EvaluationFails(f"there is no file {str(path)!r}", kind=FileNotFoundError)
         file = self.listing.files.get(real)
-        return Unknown("the size of a folder is not known", call.at) if file is None else file.size
+        return Unknown("the size of a folder is not known", call.at) if not file else file.size
 
     def iterdir(self, _: Evaluation, call: Call) -> Value:
         paths = [call.args[0] / name for name in self._names(call.args[0])]
@@ -438,16 +440,15 @@ class _PackageFolder(NamedTuple):
         evaluation.budget.charge(10)
         names = self.listing.names(real)
         self.listing.order_matters |= len(names) > 1
-        paths = {name: posixpath.join(real, name) for name in names}
+        paths = {name: join(real, name) for name in names}
         folders = [name for name, path in paths.items() if path in self.listing.folders]
         yield (spelled, folders, [name for name in paths if name not in folders])
         for name in folders:
-            yield from self._steps(
-                evaluation, self.real(posixpath.join(real, name)), posixpath.join(spelled, name)
-            )
+            yield from self._steps(evaluation, self.real(join(real, name)), join(spelled, name))
 
     def open(self, evaluation: Evaluation, call: Call) -> Value:
-        path, mode = call.argument(0, "file"), call.argument(1, "mode")
+        path = call.argument(0, "file")
+        mode = call.argument(1, "mode")
         others = call.kwargs.keys() - {"file", "mode", "encoding"}
         if mode not in (None, "r", "rt") or others or len(call.args) > 2:
             reason = "a file that is opened to write into it, or by other options, is not evaluated"
@@ -501,7 +502,7 @@ def _find_packages(listing: PackageListing, _: Evaluation, call: Call) -> Value:
 
 def _package_names(listing: PackageListing, folder: str) -> Iterator[str]:
     for name in listing.names(folder):
-        path = posixpath.join(folder, name)
+        path = join(folder, name)
         if "." not in name and f"{path}/__init__.py" in listing.files:
             yield path.replace("/", ".")
             yield from _package_names(listing, path)

@@ -3,11 +3,12 @@
 It is the result of its setup.py or CMakeLists.txt.
 """
 
-import posixpath
 from collections.abc import Collection, Sequence
-from typing import NamedTuple
+from posixpath import basename, dirname, splitext
 
+from grader.base.grouping import Strings, are_texts
 from grader.base.names import closest
+from grader.base.records import Named
 from grader.base.source import Location, Source
 from grader.ros.installation.file_search import EmptyGlob
 from grader.ros.known.releases import Release, is_before
@@ -15,8 +16,10 @@ from grader.ros.python.evaluation import PythonError
 from grader.ros.python.parse import START, Position, SyntaxFault, location_in
 from grader.ros.python.values import Unknown, Value
 
+_Names = Strings
 
-class InstalledFile(NamedTuple):
+
+class InstalledFile(Named):
     """One installed file: its path in the package, and its path below the prefix.
 
     `at` is the position that installs it.
@@ -27,7 +30,7 @@ class InstalledFile(NamedTuple):
     at: Position
 
 
-class InstallError(NamedTuple):
+class InstallError(Named):
     """Something that cannot be installed, so that the build stops."""
 
     path: str
@@ -35,6 +38,7 @@ class InstallError(NamedTuple):
     at: Position
     hint: str = ""  # what the path may mean instead
     by: str = "data_files"  # what lists the path
+    change: tuple[str, str] = ("", "")  # what is written in the call, and what is meant by it
 
     @property
     def message(self) -> str:
@@ -44,7 +48,7 @@ class InstallError(NamedTuple):
         return self.reason
 
 
-class LaterStop(NamedTuple):
+class LaterStop(Named):
     """What stops a build from a release on."""
 
     reason: str  # as part of a sentence
@@ -58,7 +62,7 @@ class LaterStop(NamedTuple):
         return f"from {self.since.title()} on, {self.reason}: {self.instead}"
 
 
-class IgnoredArgument(NamedTuple):
+class IgnoredArgument(Named):
     """An argument that setup() does not have: setuptools ignores it, with a warning."""
 
     name: str
@@ -72,7 +76,7 @@ class IgnoredArgument(NamedTuple):
         )
 
 
-class GeneratedInterfaces(NamedTuple):
+class GeneratedInterfaces(Named):
     """What rosidl_generate_interfaces() makes code of, and the packages it may use.
 
     It has the paths of .msg, .srv and .action files, of which those in `files` are there, and the
@@ -82,13 +86,13 @@ class GeneratedInterfaces(NamedTuple):
     """
 
     at: Position
-    files: tuple[str, ...] = ()
-    dependencies: tuple[str, ...] = ()
+    files: _Names = ()
+    dependencies: _Names = ()
     is_certain: bool = True
     needs_group: bool = True  # whether package.xml has to make the package a member of a group
 
 
-class CmakeComponent(NamedTuple):
+class CmakeComponent(Named):
     """A class that rclcpp_components loads from a library, and the program that starts it."""
 
     plugin: str  # sensors::Lidar
@@ -96,7 +100,7 @@ class CmakeComponent(NamedTuple):
     executable: str = ""
 
 
-class CmakeTarget(NamedTuple):
+class CmakeTarget(Named):
     """An executable or a library that CMake makes.
 
     Where it is not `is_certain`, it may have other sources, or not be made.
@@ -104,9 +108,9 @@ class CmakeTarget(NamedTuple):
 
     name: str
     kind: str  # executable, library or unknown
-    sources: tuple[str, ...]  # paths in the package
-    links: tuple[str, ...]  # what target_link_libraries() names
-    packages: tuple[str, ...]  # what ament_target_dependencies() names
+    sources: _Names  # paths in the package
+    links: _Names  # what target_link_libraries() names
+    packages: _Names  # what ament_target_dependencies() names
     components: tuple[CmakeComponent, ...]
     at: Position
     is_installed: bool
@@ -116,7 +120,7 @@ class CmakeTarget(NamedTuple):
     is_shared: bool = False  # whether it is a library that programs load when they start
 
 
-class FoundPackage(NamedTuple):
+class FoundPackage(Named):
     """A package that find_package() of CMake looks for.
 
     Where it is not certain that it is called, as under a condition, `is_certain` is False.
@@ -129,7 +133,7 @@ class FoundPackage(NamedTuple):
     is_for_tests: bool = False  # below if(BUILD_TESTING)
 
 
-class UnclosedExpression(NamedTuple):
+class UnclosedExpression(Named):
     """A generator expression of CMake, `$<...>`, that is not closed."""
 
     command: str
@@ -145,7 +149,7 @@ class UnclosedExpression(NamedTuple):
         )
 
 
-class KnownPrograms(NamedTuple):
+class KnownPrograms(Named):
     """The programs that a build installs: paths below the prefix, and names in setup.py."""
 
     executed: frozenset[str]  # that Linux may execute
@@ -153,7 +157,7 @@ class KnownPrograms(NamedTuple):
     listed: frozenset[str] | None  # in console_scripts; None where these are not known
 
 
-class Installation(NamedTuple):
+class Installation(Named):
     """The result of a setup.py or CMakeLists.txt.
 
     `fault` is set if it cannot be parsed: nothing else is known then.
@@ -166,9 +170,8 @@ class Installation(NamedTuple):
     fault: SyntaxFault | None = None
     name: str | None = None
     copies: tuple[InstalledFile, ...] = ()
-    programs: tuple[
-        str, ...
-    ] = ()  # the paths below the prefix of what a build makes and `ros2 run` may start
+    # The paths below the prefix of what a build makes and `ros2 run` may start.
+    programs: _Names = ()
     stops: tuple[InstallError, ...] = ()
     empty: tuple[EmptyGlob, ...] = ()
     faults: tuple[PythonError, ...] = ()
@@ -183,10 +186,8 @@ class Installation(NamedTuple):
     entry_points: Value = None  # what setup() is given
     ignored: tuple[IgnoredArgument, ...] = ()  # arguments that setup() does not have
     scripts_folder: str = "bin"  # below the prefix, for console_scripts
-    scripts: tuple[
-        str, ...
-    ] = ()  # likewise, of files that CMake installs with the right to execute them
-    packages: tuple[str, ...] = ()  # the Python packages, as far as they are known
+    scripts: _Names = ()  # likewise, of files that CMake installs with the right to execute them
+    packages: _Names = ()  # the Python packages, as far as they are known
     interfaces: tuple[GeneratedInterfaces, ...] = ()  # one for each call in CMakeLists.txt
     targets: tuple[CmakeTarget, ...] = ()  # of CMake
     later_stops: tuple[LaterStop, ...] = ()  # in releases that may not be meant
@@ -199,7 +200,8 @@ class Installation(NamedTuple):
         What stops a build in all of them stops it; what does in one, or in no stated one, may
         stop it.
         """
-        stops, left = [*self.stops], []
+        stops = list(self.stops)
+        left = []
         for stop in self.later_stops:
             if releases and not any(is_before(release, stop.since) for release in releases):
                 text = f"{stop.reason} from {stop.since.title()} on"
@@ -219,10 +221,10 @@ class Installation(NamedTuple):
 
         It is found by the folder or ending of the file, or by a word in it.
         """
-        folders = {posixpath.dirname(path) for path in files}
-        endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
+        folders = {dirname(path) for path in files}
+        endings = tuple({splitext(path)[1] for path in files} - {""})
         for glob in self.empty:
-            folder = posixpath.dirname(glob.pattern)
+            folder = dirname(glob.pattern)
             if folder in folders or (folder and closest(folder, folders)):
                 return glob
             if glob.pattern.endswith(endings):  # no text ends with one of no endings
@@ -238,7 +240,7 @@ class Installation(NamedTuple):
 
         The result is None where this is not known. `programs` are those of `known_programs`.
         """
-        if self.fault is not None:
+        if self.fault:
             return None
         path = f"lib/{package}/{name}"
         if path in programs.executed or path in programs.targets:
@@ -251,10 +253,11 @@ class Installation(NamedTuple):
 
     def known_programs(self) -> KnownPrograms:
         """Return the programs that a build installs."""
-        scripts, listed = self.console_scripts, None
-        if isinstance(scripts, list) and all(isinstance(script, str) for script in scripts):
+        scripts = self.console_scripts
+        listed = None
+        if isinstance(scripts, list) and are_texts(scripts):
             listed = frozenset(script.partition("=")[0].strip() for script in scripts)
-        executed = frozenset((*self.programs, *self.scripts))
+        executed = frozenset(self.programs + self.scripts)
         return KnownPrograms(executed, frozenset(copy.target for copy in self.copies), listed)
 
     def location(self, position: Position) -> Location:
@@ -264,7 +267,7 @@ class Installation(NamedTuple):
     @property
     def file(self) -> str:
         """The name of the file: setup.py or CMakeLists.txt."""
-        return posixpath.basename(self.source.path)
+        return basename(self.source.path)
 
     @property
     def is_cmake(self) -> bool:
@@ -281,7 +284,7 @@ class Installation(NamedTuple):
     @property
     def fault_text(self) -> str:
         """Why the file is not read, as part of a sentence; empty if it is."""
-        if self.fault is None:
+        if not self.fault:
             return ""
         return (
             f"{'CMake' if self.is_cmake else 'Python'} cannot read {self.file}: "
@@ -294,7 +297,7 @@ class Installation(NamedTuple):
 
         It is empty if it is, or if it certainly fails.
         """
-        if self.fault is None or self.fault.is_certain:
+        if not self.fault or self.fault.is_certain:
             return ""
         return f"{self.file} cannot be read ({self.fault.message})"
 

@@ -1,10 +1,10 @@
 """package.xml: name, build type and problems of a package (REP 127, 140 and 149)."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.problems import Problem
+from grader.base.records import Named
 from grader.base.reuse import reuse
 from grader.base.source import Location, Source
 from grader.ros.installation import package_problems as kinds
@@ -15,7 +15,7 @@ from grader.ros.xml.parsing import Element, XmlFault, XmlFile, recover_xml
 _MAX_MISPLACED = 100  # dependencies in <export>
 
 
-class DeclaredDependency(NamedTuple):
+class DeclaredDependency(Named):
     """A dependency in package.xml, with its tag: exec_depend."""
 
     name: str
@@ -24,7 +24,7 @@ class DeclaredDependency(NamedTuple):
     is_conditional: bool
 
 
-class Manifest(NamedTuple):
+class Manifest(Named):
     """The content of a package.xml.
 
     `name` is None where it cannot be read; `build_type` is by default colcon's.
@@ -62,7 +62,7 @@ class Manifest(NamedTuple):
 def read_manifest(data: bytes, path: str) -> Manifest:
     """Read a package.xml. It never raises: errors are among the problems."""
     resolved = resolve_conflicts(data)
-    if resolved is not None:
+    if resolved:
         manifest = read_manifest(resolved.data, path)
         problem = Problem(
             kinds.BAD_MANIFEST,
@@ -70,7 +70,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
             Location(path, resolved.line, 1),
         )
         return manifest._replace(problems=(problem, *manifest.problems))
-    source = Source(path, data.decode("utf-8", "replace"))
+    source = Source.decoded(path, data)
     try:
         file = XmlFile(data, source)
     except XmlFault as fault:
@@ -78,13 +78,14 @@ def read_manifest(data: bytes, path: str) -> Manifest:
             kinds.BAD_MANIFEST, f"package.xml is not readable as XML: {fault}", fault.location
         )
         return _read_broken(data, source, problem)
-    root, start = file.root, Location(path, 1, 1)
+    root = file.root
+    start = Location(path, 1, 1)
     if read_tag(root) != "package":
         problem = Problem(
             kinds.BAD_MANIFEST, f"the root of package.xml is <{root.tag}>, not <package>", start
         )
         return Manifest(source, None, "", (problem,), start, start)
-    problems = [*_problems(file)]
+    problems = list(_problems(file))
     try:
         data.decode()
     except UnicodeDecodeError:
@@ -102,8 +103,8 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
     root = file.root
     exports = _exports(root)
     build_types = [element for element in exports if _is_used_build_type(element)]
-    names: list[Element] = []
-    groups = set[str]()
+    names = []
+    groups = set()
     for element in root.iterchildren("*"):
         tag = read_tag(element)
         if tag == "name":
@@ -157,10 +158,12 @@ def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:
 
     This is the first name, and the first build type.
     """
-    root, start = recover_xml(data), Location(source.path, 1, 1)
+    root = recover_xml(data)
+    start = Location(source.path, 1, 1)
     if root is None or read_tag(root) != "package":
         return Manifest(source, None, "", (problem,), start, start)
-    name, build_type = root.findtext(".//{*}name") or "", root.findtext(".//{*}build_type") or ""
+    name = root.findtext(".//{*}name") or ""
+    build_type = root.findtext(".//{*}build_type") or ""
     location = problem.location
     return Manifest(
         source, name.strip() or None, build_type.strip(), (problem,), location, location
@@ -189,7 +192,8 @@ def _problems(file: XmlFile) -> Iterator[Problem]:
     for words, element in find_refusals(root):
         yield _refused(words, file.location(element))
     for element in root.iterchildren("*"):
-        tag, email = read_tag(element), element.get("email") or ""
+        tag = read_tag(element)
+        email = element.get("email") or ""
         is_text = tag in ("license", "maintainer", "description")
         if is_text and "todo" in f"{element.text or ''} {email}".lower():
             yield Problem(

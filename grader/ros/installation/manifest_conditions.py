@@ -5,14 +5,15 @@ They are read as catkin_pkg's `evaluate_condition` reads them.
 
 import ast
 import re
-from collections.abc import Callable, Mapping
 from operator import eq, ge, gt, le, lt, ne
+
+from grader.base.patterns import on_use
 
 # What ROS 2 Jazzy sets; a variable that is not set is empty.
 _VARIABLES = {"ROS_VERSION": "2", "ROS_DISTRO": "jazzy", "ROS_PYTHON_VERSION": "3"}
 _TERM = r"""(\$[A-Za-z0-9_]+|[A-Za-z0-9_-]+|"[^"\n\r]*"|'[^'\n\r]*')"""
-_COMPARISON = re.compile(rf"{_TERM}\s*(==|!=|>=|>|<=|<)\s*{_TERM}")
-_COMPARE: Mapping[str, Callable[[str, str], bool]] = {
+_COMPARISON = on_use(rf"{_TERM}\s*(==|!=|>=|>|<=|<)\s*{_TERM}")
+_COMPARE = {
     "==": eq,
     "!=": ne,
     ">=": ge,
@@ -20,7 +21,7 @@ _COMPARE: Mapping[str, Callable[[str, str], bool]] = {
     "<=": le,
     "<": lt,
 }
-_BETWEEN = re.compile(r"(?:and|or|[()\s])*")  # what stands between comparisons
+_BETWEEN = on_use(r"(?:and|or|[()\s])*")  # what stands between comparisons
 _MAX_LENGTH = 1_000  # characters
 
 

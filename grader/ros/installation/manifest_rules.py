@@ -8,16 +8,19 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
 from grader.base.text import enumerated
 from grader.ros.xml.parsing import Element
 
 # What is refused, in the words of catkin_pkg, and the element that is meant.
 _Refusal = tuple[str, Element]
+_Refusals = Iterator[_Refusal]
 _Children = Mapping[str, Sequence[Element]]
 
-_NAME = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]*\n?")
-_VERSION = re.compile(r"[0-9]+\.[0-9]+\.[0-9]+\n?")
-_EMAIL = re.compile(
+_NAME = on_use(r"[a-zA-Z0-9][a-zA-Z0-9_-]*\n?")
+_VERSION = on_use(r"[0-9]+\.[0-9]+\.[0-9]+\n?")
+_EMAIL = on_use(
     r"[-a-zA-Z0-9_%+]+(\.[-a-zA-Z0-9_%+]+)*@[-a-zA-Z0-9%]+(\.[-a-zA-Z0-9%]+)*\.[a-zA-Z]{2,}\n?",
     re.ASCII,
 )
@@ -34,12 +37,12 @@ _STANDS_FOR = {
 }
 
 
-def find_refusals(root: Element) -> Iterator[_Refusal]:
+def find_refusals(root: Element) -> _Refusals:
     """Yield why the tools of ROS 2 refuse a package.xml with this root, and where.
 
     Nothing is yielded if they accept it.
     """
-    children: dict[str, list[Element]] = defaultdict(list)
+    children = defaultdict(list)
     for element in root.iterchildren("*"):
         children[read_tag(element)].append(element)
     version = _read_format(root)
@@ -90,8 +93,8 @@ def _read_format(root: Element) -> int | None:
     return number if number in (1, 2, 3) else None
 
 
-def _tags_of_dependencies(version: int) -> tuple[str, ...]:
-    return (*_DEPENDS, *_DEPENDS_BY_FORMAT[min(version, 2)])
+def _tags_of_dependencies(version: int) -> Strings:
+    return _DEPENDS + _DEPENDS_BY_FORMAT[min(version, 2)]
 
 
 def _make_key(dependency: Element) -> tuple[str | None, ...]:
@@ -99,14 +102,13 @@ def _make_key(dependency: Element) -> tuple[str | None, ...]:
     return (read_text(dependency), *(dependency.get(name) for name in (*_VERSIONS, "condition")))
 
 
-def _redundant_dependencies(children: _Children, version: int) -> Iterator[_Refusal]:
-    general, tags, words = (
-        "depend",
-        _STANDS_FOR["depend"],
-        "The generic dependency on '{}' is redundant with: {}",
-    )
+def _redundant_dependencies(children: _Children, version: int) -> _Refusals:
+    general = "depend"
+    tags = _STANDS_FOR["depend"]
+    words = "The generic dependency on '{}' is redundant with: {}"
     if version == 1:
-        general, tags = "test_depend", ("build_depend", "run_depend")
+        general = "test_depend"
+        tags = ("build_depend", "run_depend")
         words = 'The test dependency on "{}" is redundant with: {}'
     counts = {tag: Counter(map(_make_key, children.get(tag, ()))) for tag in tags}
     for dependency in children.get(general, ()):
@@ -119,10 +121,10 @@ def _redundant_dependencies(children: _Children, version: int) -> Iterator[_Refu
                 counts[tag][key] += 1
 
 
-def _known_attributes(version: int) -> dict[str, tuple[str, ...]]:
+def _known_attributes(version: int) -> dict[str, Strings]:
     """Return the tags that a package.xml of a format may have, each with its attributes."""
     of_condition = ("condition",) if version == 3 else ()  # since REP 149
-    known: dict[str, tuple[str, ...]] = {
+    known = {
         "name": (),
         "version": ("compatibility",),
         "description": (),
@@ -132,13 +134,13 @@ def _known_attributes(version: int) -> dict[str, tuple[str, ...]]:
         "author": ("email",),
         "export": (),
     }
-    known |= dict.fromkeys(_tags_of_dependencies(version), (*_VERSIONS, *of_condition))
+    known |= dict.fromkeys(_tags_of_dependencies(version), _VERSIONS + of_condition)
     if of_condition:
         known |= dict.fromkeys(("group_depend", "member_of_group"), of_condition)
     return known
 
 
-def _unknown_parts(root: Element, children: _Children, version: int) -> Iterator[_Refusal]:
+def _unknown_parts(root: Element, children: _Children, version: int) -> _Refusals:
     """Yield what has no place in a package.xml: tags, attributes, and elements in others."""
     known = _known_attributes(version)
     yield from _unknown_attributes(root, ("format",))
@@ -162,7 +164,7 @@ def _unknown_parts(root: Element, children: _Children, version: int) -> Iterator
                 )
 
 
-def _unknown_attributes(element: Element, known: Sequence[str]) -> Iterator[_Refusal]:
+def _unknown_attributes(element: Element, known: Sequence[str]) -> _Refusals:
     unknown = [name for name in map(str, element.attrib) if name not in known and "}" not in name]
     if unknown:
         words = (
@@ -172,7 +174,7 @@ def _unknown_attributes(element: Element, known: Sequence[str]) -> Iterator[_Ref
         yield words, element
 
 
-def _invalid_texts(root: Element, children: _Children) -> Iterator[_Refusal]:
+def _invalid_texts(root: Element, children: _Children) -> _Refusals:
     """Yield what `Package.validate` refuses.
 
     This is an invalid name, version or email, or a text or element that is missing.
@@ -195,13 +197,14 @@ def _invalid_texts(root: Element, children: _Children) -> Iterator[_Refusal]:
         yield 'The package node must contain at least one "license" tag', root
 
 
-def _invalid_names(element: Element) -> Iterator[_Refusal]:
+def _invalid_names(element: Element) -> _Refusals:
     if not _NAME.fullmatch(read_text(element)):
         yield f'Package name "{read_text(element)}" does not follow naming conventions', element
 
 
-def _invalid_versions(element: Element) -> Iterator[_Refusal]:
-    version, compatibility = read_text(element), element.get("compatibility")
+def _invalid_versions(element: Element) -> _Refusals:
+    version = read_text(element)
+    compatibility = element.get("compatibility")
     if not version:
         yield "Package version must not be empty", element
     elif not _VERSION.fullmatch(version):
@@ -219,15 +222,16 @@ def _invalid_versions(element: Element) -> Iterator[_Refusal]:
         )
 
 
-def _invalid_emails(person: Element) -> Iterator[_Refusal]:
-    email, tag = person.get("email"), read_tag(person)
+def _invalid_emails(person: Element) -> _Refusals:
+    email = person.get("email")
+    tag = read_tag(person)
     if email is None and tag == "maintainer":
         yield 'The "maintainer" tag must have the attribute "email"', person
     elif email is not None and not _EMAIL.fullmatch(read_email(person)):
         yield f'Invalid email "{email}" for person "{read_text(person)}"', person
 
 
-def _own_dependencies(children: _Children, version: int) -> Iterator[_Refusal]:
+def _own_dependencies(children: _Children, version: int) -> _Refusals:
     """Yield the dependencies of a package on itself, and on a group that it is a member of."""
     names = {read_text(element) for element in children.get("name", ())}
     for tag in _tags_of_dependencies(version):

@@ -5,6 +5,8 @@ import re
 from pathlib import PurePosixPath
 from typing import Literal
 
+from grader.base.names import last_part
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source
 
 # Paths below these are compared as strings.
@@ -26,15 +28,26 @@ ENDINGS = (
 )
 
 
+_TEMPLATES = (".template", ".in", ".j2", ".jinja", ".jinja2", ".tmpl", ".tpl", ".em")
+
+
+def is_template(path: str) -> bool:
+    """Return whether a program fills a file in: its ending or one of its folders says so."""
+    folders = path.split("/")[:-1]
+    return path.endswith(_TEMPLATES) or "templates" in folders or "template" in folders
+
+
 def is_launch_file(path: str) -> bool:
     """Return whether a file is a launch file.
 
     It is by its name, or because it is in a folder named launch.
     """
+    if is_template(path):
+        return False
     if path.endswith(ENDINGS):
         return True
     folder, _, name = path.rpartition("/")
-    if folder.rpartition("/")[2] != "launch" or name == "__init__.py":
+    if last_part(folder) != "launch" or name == "__init__.py":
         return False
     suffix = PurePosixPath(name).suffix
     return suffix in ("", ".launch", ".py", ".xml", ".yaml", ".yml") or (
@@ -43,12 +56,12 @@ def is_launch_file(path: str) -> bool:
 
 
 LaunchKind = Literal["launch", "ROS 1", "other"]
-_IS_YAML_LAUNCH = re.compile(r"^[\"']?launch[\"']?\s*:", re.MULTILINE)
+_IS_YAML_LAUNCH = on_use(r"^[\"']?launch[\"']?\s*:", re.MULTILINE)
 # What launch files of ROS 1 have, and those of ROS 2 never.
-_ROS1 = re.compile(r"<node\b(?![^<>]*\bexec=)[^<>]*\btype=|<rosparam\b")
+_ROS1 = on_use(r"<node\b(?![^<>]*\bexec=)[^<>]*\btype=|<rosparam\b")
 # What those of ROS 1 have, and some of ROS 2 by mistake, and what those of ROS 2 alone have.
-_SUBSTITUTION_OF_ROS1 = re.compile(r"\$\((?:find|arg|optenv) ")
-_ROS2 = re.compile(r"<(?:node|executable)\b[^<>]*\b(?:exec|cmd)=|\$\((?:find-pkg-share|var) ")
+_SUBSTITUTION_OF_ROS1 = on_use(r"\$\((?:find|arg|optenv) ")
+_ROS2 = on_use(r"<(?:node|executable)\b[^<>]*\b(?:exec|cmd)=|\$\((?:find-pkg-share|var) ")
 
 
 def launch_kind(path: str, text: str) -> LaunchKind:
@@ -71,7 +84,7 @@ def launch_kind(path: str, text: str) -> LaunchKind:
 def _is_of_ros1(text: str) -> bool:
     if _ROS1.search(text):
         return True
-    return _SUBSTITUTION_OF_ROS1.search(text) is not None and _ROS2.search(text) is None
+    return _SUBSTITUTION_OF_ROS1.search(text) is not None and not _ROS2.search(text)
 
 
 def is_launch_named(path: str, name: str) -> bool:
@@ -79,7 +92,7 @@ def is_launch_named(path: str, name: str) -> bool:
 
     These are the languages that ros2 launch reads.
     """
-    file_name = path.rpartition("/")[2]
+    file_name = last_part(path)
     return file_name == name or (
         launch_stem(file_name) == launch_stem(name) and file_name.endswith(ENDINGS[:4])
     )
@@ -87,7 +100,7 @@ def is_launch_named(path: str, name: str) -> bool:
 
 def launch_stem(name: str) -> str:
     """Return the name of a launch file without its endings."""
-    base = name.rpartition("/")[2]
+    base = last_part(name)
     if ".launch" in base:
         return base.split(".launch")[0]
     return base.rpartition("_launch.")[0] or base

@@ -5,19 +5,21 @@ also depends on the other arguments of setup(), on setup.cfg and on pyproject.to
 """
 
 import ast
-import posixpath
-import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from configparser import ConfigParser, Error
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import chain
 from pathlib import PurePosixPath
+from posixpath import basename, dirname, join, normpath, splitext
 
 import tomli
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings, are_texts, distinct
 from grader.base.names import closest, did_you_mean
+from grader.base.patterns import on_use
+from grader.base.records import Record
 from grader.base.source import Source
 from grader.base.text import enumerated
 from grader.files.limits import ignored_part
@@ -29,7 +31,7 @@ from grader.ros.installation.installation import (
     InstalledFile,
     InstallError,
 )
-from grader.ros.known.releases import Release
+from grader.ros.known.releases import Releases
 from grader.ros.python.budget import Budget
 from grader.ros.python.evaluation import Evaluation, PythonError
 from grader.ros.python.interpreter import Interpreter
@@ -49,6 +51,8 @@ from grader.ros.python.values import (
     unknown_in,
 )
 from grader.ros.python.walking import walk
+
+_Arguments = Mapping[str, Value]
 
 _MAX_GUESSES = 10
 _ROOT = f"/{PACKAGE_FOLDER}"
@@ -95,10 +99,10 @@ _NO_PACKAGES = frozenset(
     }
 )
 # Most files need no packaging, whose import takes a tenth of reading a package.
-_PLAIN_VERSION = re.compile(r"[0-9]+(?:\.[0-9]+)*")
-_PLAIN_REQUIREMENT = re.compile(r"[A-Za-z0-9]+(?:[_-][A-Za-z0-9]+)*")
+_PLAIN_VERSION = on_use(r"[0-9]+(?:\.[0-9]+)*")
+_PLAIN_REQUIREMENT = on_use(r"[A-Za-z0-9]+(?:[_-][A-Za-z0-9]+)*")
 # The name and value of an entry point, as importlib.metadata has them.
-_ENTRY_POINT = re.compile(r"\s*[^=\s][^=]*=\s*[\w.]+\s*(?::\s*[\w.]+\s*)?(?:\[.*\]\s*)?")
+_ENTRY_POINT = on_use(r"\s*[^=\s][^=]*=\s*[\w.]+\s*(?::\s*[\w.]+\s*)?(?:\[.*\]\s*)?")
 _TEXTS = (
     "name",
     "description",
@@ -170,12 +174,13 @@ _AT_HAND = frozenset({"setuptools", "wheel"})  # what setup_requires may name wi
 # accepted. setuptools 68 takes a dash for an underscore, with a warning (dist.py,
 # `warn_dash_deprecation`).
 _SECTIONS = {"develop": {"script_dir", "install_scripts"}, "install": {"install_scripts"}}
-_TOOL_SECTIONS = re.compile(
+_TOOL_SECTIONS = on_use(
     r"flake8|pycodestyle|pydocstyle|pep8|pep257|mypy\b.*|isort|pylint|yapf|black|tool:.*|coverage:.*|bdist_wheel|sdist|test"
 )
 _MAX_SETTINGS = 64 * 1024  # bytes
 # A fault, or what is not evaluated.
 _Finding = str | Unknown
+_Findings = Iterator[_Finding]
 
 
 def read_setup(
@@ -183,7 +188,7 @@ def read_setup(
     path: str,
     tree: Tree,
     budget: Budget | None = None,
-    releases: tuple[Release, ...] = (),
+    releases: Releases = (),
 ) -> Installation:
     """Evaluate the setup.py of a package with these files; its work is charged to the budget.
 
@@ -207,7 +212,7 @@ def read_setup(
     }  # the first of several counts
     listing = PackageListing(tree, budget, ORDERS[0])
     setups = [_evaluate_setup(code, listing, written, "setup.py")]
-    if "__file__" in code.source.text:
+    if "__file__" in code.text:
         setups.append(
             _evaluate_setup(
                 code, PackageListing(tree, budget, ORDERS[0]), written, f"{_ROOT}/setup.py"
@@ -235,7 +240,7 @@ def _common_result(setups: Sequence[Installation]) -> Installation:
     )
     if doubts:
         doubt = doubts[0]
-    unknown = tuple(dict.fromkeys([*setups[0].unknown, doubt]))
+    unknown = distinct([*setups[0].unknown, doubt])
     return setups[0]._replace(name=None, copies=(), stops=(), unknown=unknown, doubt=doubt)
 
 
@@ -244,7 +249,7 @@ def _evaluate_setup(
 ) -> Installation:
     """Evaluate a file with folders listed in some order; `file` is what __file__ is."""
     data_files = _DataFiles(listing, _ROOT, written, is_first=file == "setup.py")
-    calls: list[Call] = []
+    calls = []
 
     def setup(_: Evaluation, call: Call) -> Value:
         calls.append(call)
@@ -282,7 +287,7 @@ def _evaluate_setup(
     if code.conflict is not None:
         faults.insert(0, PythonError(*code.conflict))
     doubts = data_files.doubts
-    if interpreter.doubt is not None:
+    if interpreter.doubt:
         doubts = [interpreter.doubt, *doubts]
     return Installation(
         source=code.source,
@@ -291,7 +296,7 @@ def _evaluate_setup(
         stops=tuple(data_files.stops),
         empty=tuple(listing.empty),
         faults=tuple(faults),
-        unknown=tuple(dict.fromkeys([*doubts, *data_files.unknown])),
+        unknown=distinct(doubts + data_files.unknown),
         doubt=doubts[0] if doubts else None,
         is_called=bool(calls) or interpreter.doubt is not None,
         called_at=calls[0].at if calls else START,
@@ -306,7 +311,7 @@ def _evaluate_setup(
 def _files_at(call: Call, source: Source) -> Position:
     """Return the position of the argument data_files; without it, of the call."""
     at = call.places.get("data_files")
-    if at is None:
+    if not at:
         return call.at
     name = source.line(at.line).find("data_files")
     return at._replace(column=name + 1) if 0 <= name < at.column else at
@@ -325,7 +330,7 @@ def _read_call(data_files: "_DataFiles", call: Call) -> None:
     entries = call.kwargs.get("data_files")
     if entries is not None:
         data_files.read(entries, call.at)
-    of_files = [*_file_findings(data_files.listing, call)]
+    of_files = list(_file_findings(data_files.listing, call))
     is_configured = any(isinstance(finding, Unknown) for finding in of_files)
     for finding in (
         *_argument_findings(call.kwargs, data_files.listing, call.at, is_configured),
@@ -337,8 +342,7 @@ def _read_call(data_files: "_DataFiles", call: Call) -> None:
             data_files.doubts.append(finding)
 
 
-@dataclass(slots=True)
-class _DataFiles:
+class _DataFiles(Record, frozen=False):
     """Installs the files of data_files as setuptools' install_data does, without touching any."""
 
     listing: PackageListing
@@ -363,7 +367,7 @@ class _DataFiles:
 
     def finish(self) -> None:
         """Remove what is not certain: files with the same target."""
-        sources: dict[str, set[str]] = defaultdict(set)
+        sources = defaultdict(set)
         for copy in self.copies:
             sources[copy.target].add(copy.source)
         several = [copy for copy in self.copies if len(sources[copy.target]) > 1]
@@ -400,8 +404,6 @@ class _DataFiles:
                 self._folder(folder, files, at)
             case Unknown() | Call():
                 self._give_up(entry, "an entry of data_files is not evaluated", at)
-            case [str() as path, *_] if len(entry) == 1:
-                self.stop("an entry is a folder and a list of files; the list is missing", at, path)
             case [folder, files]:
                 self.stop("an entry of data_files is not a tuple: write (folder, [files])", at)
                 self._folder(folder, files, at)
@@ -409,11 +411,11 @@ class _DataFiles:
                 self.stop("an entry of data_files is not a tuple: write (folder, [files])", at)
                 for folder, files in entry.items() if isinstance(entry, dict) else ():
                     self._folder(folder, files, at)
-            case (*folders, list() as files) if all(isinstance(part, str) for part in folders):
+            case (*folders, list() as files) if are_texts(folders):
                 self.stop(
                     "an entry of data_files is not a tuple of a folder and a list of files", at
                 )
-                self._folder(posixpath.join("", *folders), files, at)
+                self._folder(join("", *folders), files, at)
             case _:
                 self.stop(
                     "an entry of data_files is not a tuple of a folder and a list of files", at
@@ -530,9 +532,7 @@ class _DataFiles:
 
     def _missing_path(self, text: str, at: Position) -> None:
         """Note that there is no file at a path, or that it is ignored."""
-        if str(PurePosixPath(text)) in self.listing.files:
-            self.stop("there is no such file: a path of a file does not end in /", at, text)
-        elif ignored_part(posixpath.normpath(text)):
+        if ignored_part(normpath(text)):
             self._give_up(None, f"{text} is an ignored file", at)
         else:
             guess = did_you_mean(text, self.listing.files) if len(self.stops) < _MAX_GUESSES else ""
@@ -542,7 +542,7 @@ class _DataFiles:
         """Install a file of the package; return whether it is one."""
         if path is None or path not in self.listing.files:
             return False
-        target = posixpath.normpath(posixpath.join(folder, posixpath.basename(path)))
+        target = normpath(join(folder, basename(path)))
         self.copies.append(InstalledFile(path, target, at))
         return True
 
@@ -551,13 +551,9 @@ class _DataFiles:
 
         It does not match the folder.
         """
-        above = posixpath.dirname(folder)
+        above = dirname(folder)
         names = self.listing.names(above) if above else []
-        beside = [
-            posixpath.splitext(name)[1]
-            for name in names
-            if posixpath.join(above, name) in self.listing.files
-        ]
+        beside = [splitext(name)[1] for name in names if join(above, name) in self.listing.files]
         if not any(beside):
             return ""
         most_common = max(sorted(set(beside) - {""}), key=beside.count)
@@ -565,8 +561,8 @@ class _DataFiles:
 
 
 def _argument_findings(
-    kwargs: Mapping[str, Value], listing: PackageListing, at: Position, is_configured: bool
-) -> Iterator[_Finding]:
+    kwargs: _Arguments, listing: PackageListing, at: Position, is_configured: bool
+) -> _Findings:
     """Yield what is wrong with the arguments of setup() besides data_files.
 
     What of them is not evaluated is yielded, too.
@@ -583,7 +579,7 @@ def _argument_findings(
         yield from _discovery_findings(listing)
 
 
-def _unusual_values(kwargs: Mapping[str, Value], at: Position) -> Iterator[Unknown]:
+def _unusual_values(kwargs: _Arguments, at: Position) -> Iterator[Unknown]:
     """Yield that arguments which are not checked further have values that are not evaluated."""
     for name, value in kwargs.items():
         if name in _CHECKED or value is None:
@@ -594,7 +590,7 @@ def _unusual_values(kwargs: Mapping[str, Value], at: Position) -> Iterator[Unkno
             )
 
 
-def _switch_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator[_Finding]:
+def _switch_findings(kwargs: _Arguments, at: Position) -> _Findings:
     """Yield what is wrong with the arguments that are True or False."""
     for name in _SWITCHES:
         value = kwargs.get(name)
@@ -604,7 +600,7 @@ def _switch_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator[_Fin
             yield f"{name} is True or False, not {value!r}"
 
 
-def _ignored_arguments(kwargs: Mapping[str, Value]) -> list[IgnoredArgument]:
+def _ignored_arguments(kwargs: _Arguments) -> list[IgnoredArgument]:
     """Return the arguments that setuptools does not know, with what they may mean.
 
     Each has the missing argument that it may mean.
@@ -618,7 +614,7 @@ def _ignored_arguments(kwargs: Mapping[str, Value]) -> list[IgnoredArgument]:
 
 
 def _is_list(value: Value) -> bool:
-    return isinstance(value, list | tuple) and all(isinstance(item, str) for item in value)
+    return isinstance(value, list | tuple) and are_texts(value)
 
 
 def _are_requirements(value: Value) -> bool:
@@ -671,12 +667,12 @@ _USUAL: Mapping[str, Callable[[Value], bool]] = {
     "package_data": lambda argument: (
         isinstance(argument, dict)
         and all(map(_is_list, argument.values()))
-        and _is_list([*argument])
+        and _is_list(list(argument))
     ),
 }
 
 
-def _version_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator[_Finding]:
+def _version_findings(kwargs: _Arguments, at: Position) -> _Findings:
     version = kwargs.get("version")
     if isinstance(version, str):
         if version and not _is_version(version):
@@ -685,12 +681,12 @@ def _version_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator[_Fi
         yield unknown_in(version) or Unknown("this version is not evaluated", at)
 
 
-def _entry_point_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator[_Finding]:
+def _entry_point_findings(kwargs: _Arguments, at: Position) -> _Findings:
     groups = kwargs.get("entry_points")
     if groups is None:
         return
     unknown = unknown_in(groups)
-    if unknown is not None or not isinstance(groups, dict):
+    if unknown or not isinstance(groups, dict):
         yield unknown or Unknown("these entry points are not evaluated", at)
         return
     if not all(isinstance(group, list | tuple) for group in groups.values()):
@@ -712,14 +708,12 @@ def _folder_of_package(name: str, package_dir: Value) -> str | None:
         return None
     if any(key for key in package_dir):
         return None  # some packages have folders of their own
-    return posixpath.normpath(posixpath.join(str(package_dir.get("", "")), path))
+    return normpath(join(str(package_dir.get("", "")), path))
 
 
-def _package_findings(
-    kwargs: Mapping[str, Value], listing: PackageListing, at: Position
-) -> Iterator[_Finding]:
+def _package_findings(kwargs: _Arguments, listing: PackageListing, at: Position) -> _Findings:
     packages = kwargs.get("packages")
-    if isinstance(packages, list | tuple) and all(isinstance(package, str) for package in packages):
+    if isinstance(packages, list | tuple) and are_texts(packages):
         for name in packages:
             folder = _folder_of_package(name, kwargs.get("package_dir"))
             if folder is not None and folder not in listing.folders:
@@ -728,7 +722,7 @@ def _package_findings(
         yield Unknown("this value of packages is not evaluated", at)
 
 
-def _discovery_findings(listing: PackageListing) -> Iterator[_Finding]:
+def _discovery_findings(listing: PackageListing) -> _Findings:
     """Yield the error of setuptools where it searches for packages and finds several."""
     folders = [
         name for name in listing.names("") if name in listing.folders and name.isidentifier()
@@ -743,7 +737,7 @@ def _discovery_findings(listing: PackageListing) -> Iterator[_Finding]:
         )
 
 
-def _file_findings(listing: PackageListing, call: Call) -> Iterator[_Finding]:
+def _file_findings(listing: PackageListing, call: Call) -> _Findings:
     """Yield what is wrong with setup.cfg and pyproject.toml, and what of them is not evaluated."""
     for name, read in (("setup.cfg", _cfg_findings), ("pyproject.toml", _toml_findings)):
         if name in listing.files:
@@ -753,7 +747,7 @@ def _file_findings(listing: PackageListing, call: Call) -> Iterator[_Finding]:
                 yield Unknown(f"{name} cannot be read", call.at)
 
 
-def _cfg_findings(text: str, call: Call) -> Iterator[_Finding]:
+def _cfg_findings(text: str, call: Call) -> _Findings:
     parser = ConfigParser()
     parser.optionxform = str  # type: ignore[assignment,method-assign]
     try:
@@ -773,7 +767,7 @@ def _cfg_findings(text: str, call: Call) -> Iterator[_Finding]:
             yield Unknown(f"the section [{section}] of setup.cfg is not evaluated", call.at)
 
 
-def _packages_in(value: Value) -> tuple[str, ...]:
+def _packages_in(value: Value) -> Strings:
     if isinstance(value, list | tuple):
         return tuple(name.replace("/", ".") for name in value if isinstance(name, str))
     return ()
@@ -784,23 +778,24 @@ def _scripts_folder(listing: PackageListing) -> str:
 
     It is bin unless setup.cfg names another.
     """
-    parser, file = ConfigParser(), listing.files.get("setup.cfg")
+    parser = ConfigParser()
+    file = listing.files.get("setup.cfg")
     try:
-        parser.read_string(file.read(_MAX_SETTINGS).decode() if file is not None else "")
+        parser.read_string(file.read(_MAX_SETTINGS).decode() if file else "")
         options = {option.replace("-", "_"): value for option, value in parser["install"].items()}
-        return posixpath.normpath(options["install_scripts"].removeprefix("$base").lstrip("/"))
+        return normpath(options["install_scripts"].removeprefix("$base").lstrip("/"))
     except (InputError, UnicodeDecodeError, Error, KeyError):
         return "bin"
 
 
-def _option_findings(section: str, others: set[str], at: Position) -> Iterator[_Finding]:
+def _option_findings(section: str, others: set[str], at: Position) -> _Findings:
     if section == "install" and "script_dir" in others:
         yield "setup.cfg sets script_dir in [install], where it is called install_scripts"
     elif others:
         yield Unknown(f"the option {min(others)} in [{section}] of setup.cfg is not evaluated", at)
 
 
-def _toml_findings(text: str, call: Call) -> Iterator[_Finding]:
+def _toml_findings(text: str, call: Call) -> _Findings:
     try:
         table = tomli.loads(text)
     except tomli.TOMLDecodeError as error:

@@ -6,9 +6,11 @@ The source is rosidl_adapter/parser.py of ros2/rosidl, branch jazzy.
 import posixpath
 import re
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple, cast, get_args
+from typing import cast, get_args
 
 from grader.base.names import near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location, Source
 from grader.base.text import enumerated
 from grader.ros.interfaces.interface_types import (
@@ -29,13 +31,14 @@ from grader.ros.interfaces.interface_types import (
 INTERFACE_ENDINGS = tuple(f".{kind}" for kind in get_args(InterfaceKind))
 _MAX_LINES = 2_000  # of a file; no message is as long
 _MAX_FAULTS = 20
-_SEPARATOR, _LIKE_SEPARATOR = "---", re.compile(r"\s*+[-_]{2,}+\s*")
+_SEPARATOR = "---"
+_LIKE_SEPARATOR = re.compile(r"\s*+[-_]{2,}+\s*")
 _BOUND = "<="
-_PACKAGE = re.compile(r"(?!.*__)(?!.*_\Z)[a-z][a-z0-9_]*\Z")
+_PACKAGE = on_use(r"(?!.*__)(?!.*_\Z)[a-z][a-z0-9_]*\Z")
 _FIELD = _PACKAGE
-_MESSAGE = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
+_MESSAGE = on_use(r"[A-Z][A-Za-z0-9]*\Z")
 # rosidl has the pattern [A-Z]([A-Z0-9_]?[A-Z0-9]+)*, which takes long on some names.
-_CONSTANT = re.compile(r"(?!.*__)[A-Z][A-Z0-9_]*+(?<!_)\Z")
+_CONSTANT = on_use(r"(?!.*__)[A-Z][A-Z0-9_]*+(?<!_)\Z")
 _OWN_SUFFIXES = ("_Request", "_Response", "_Goal", "_Result", "_Feedback")
 _WORDS = {"true": True, "1": True, "false": False, "0": False}
 # Names that other languages and ROS 1 have for the primitive types.
@@ -61,10 +64,11 @@ class _Wrong(Exception):
 
     def __init__(self, message: str, written: str = "", meant: str | None = None) -> None:
         super().__init__(message)
-        self.written, self.meant = written, meant
+        self.written = written
+        self.meant = meant
 
 
-class _Line(NamedTuple):
+class _Line(Named):
     """A line of a file, without its comment, and its number."""
 
     text: str
@@ -90,7 +94,9 @@ class _Reading:
     """The reading of one file."""
 
     def __init__(self, source: Source, package: str, kind: InterfaceKind) -> None:
-        self._source, self._package, self._kind = source, package, kind
+        self._source = source
+        self._package = package
+        self._kind = kind
         self._faults: list[InterfaceFault] = []
 
     def interface(self) -> Interface:
@@ -251,7 +257,8 @@ def _read_element(text: str, package: str) -> FieldType:
     if is_foreign:
         _check_foreign(text)
     else:
-        owner, name = package, text
+        owner = package
+        name = text
     if not _is_message_name(name):
         raise _no_type(text, is_foreign=bool(is_foreign))
     return FieldType(owner, name)

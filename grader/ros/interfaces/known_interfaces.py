@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cache
 from typing import get_args
 
+from grader.base.grouping import StringsByName
 from grader.ros.interfaces.interface_file import read_type
 from grader.ros.interfaces.interface_types import (
     FieldType,
@@ -37,7 +38,7 @@ def known_interfaces(
     table = interface_table(package)
     if table is None:
         return None
-    interfaces: dict[str, Interface] = {}
+    interfaces = {}
     for kind in get_args(InterfaceKind):
         for name, row in table.get(kind, {}).items():
             forms = [form for form in _forms(row, releases or RELEASES) if form != _ABSENT]
@@ -70,12 +71,12 @@ def find_change(package: str, name: str, releases: Collection[Release]) -> str:
     return f"from {RELEASES[RELEASES.index(having[-1]) + 1].title()} on"
 
 
-def _forms(row: str | Mapping[str, str], releases: Collection[Release]) -> Iterator[str]:
+def _forms(row: str | StringsByName, releases: Collection[Release]) -> Iterator[str]:
     """Yield the texts of a type in some releases, each once."""
     if isinstance(row, str):
         yield row
         return
-    said = set[str]()
+    said = set()
     text = _ABSENT
     for release in RELEASES:
         text = row.get(release, text)

@@ -2,42 +2,46 @@
 
 from collections.abc import Mapping
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
+from grader.base.grouping import Strings, StringsByName
+from grader.base.records import Named
 from grader.ros.known.releases import Release
 from grader.ros.known.typed_rows import read_file, read_row
 
+_Words = frozenset[str]
 
-class _GoneCommand(NamedTuple):
+
+class _GoneCommand(Named):
     """A command that later releases do not have."""
 
     until: Release
     instead: str
 
 
-class CMakeWords(NamedTuple):
+class CMakeWords(Named):
     """Commands, keywords and variables of CMake and ament; the file says what each is."""
 
-    harmless: frozenset[str]  # commands
-    target_makers: frozenset[str]  # commands that add targets of other projects
-    named_targets: frozenset[str]  # commands that add a target, which is called as the first word
-    opaque: frozenset[str]  # harmless commands that set unknown variables
-    install_keywords: frozenset[str]
-    artifacts: frozenset[str]  # the keywords that name a kind of target
-    interface_keywords: frozenset[str]
-    python_keywords: frozenset[str]
-    auto_keywords: frozenset[str]
-    target_keywords: frozenset[str]
-    test_keywords: frozenset[str]  # behind the sources of a test
-    without_tests: frozenset[str]  # packages without commands for tests, besides `exports`
-    source_endings: tuple[str, ...]  # that a source may lack
-    foreign: frozenset[str]  # how variables of CMake begin
-    modules: frozenset[str]  # that only define commands
-    providers: Mapping[str, str]  # packages by their commands
-    exports: Mapping[str, str]  # what find_package() of a package finds as well, in words
+    harmless: _Words  # commands
+    target_makers: _Words  # commands that add targets of other projects
+    named_targets: _Words  # commands that add a target, which is called as the first word
+    opaque: _Words  # harmless commands that set unknown variables
+    install_keywords: _Words
+    artifacts: _Words  # the keywords that name a kind of target
+    interface_keywords: _Words
+    python_keywords: _Words
+    auto_keywords: _Words
+    target_keywords: _Words
+    test_keywords: _Words  # behind the sources of a test
+    without_tests: _Words  # packages without commands for tests, besides `exports`
+    source_endings: Strings  # that a source may lack
+    foreign: _Words  # how variables of CMake begin
+    modules: _Words  # that only define commands
+    providers: StringsByName  # packages by their commands
+    exports: StringsByName  # what find_package() of a package finds as well, in words
     outputs: Mapping[str, int]  # where harmless commands name their result
-    variables: Mapping[str, str]
-    install_dirs: Mapping[str, str]
+    variables: StringsByName
+    install_dirs: StringsByName
     gone: Mapping[str, Any]  # what later releases do not have, by command
     oldest_minimum: Mapping[str, tuple[int, ...]]
 

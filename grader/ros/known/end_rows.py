@@ -8,11 +8,13 @@ import os
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import tomli
 
-from grader.ros.known.releases import RELEASES, Release
+from grader.base.grouping import Strings, StringsByName
+from grader.base.records import Named
+from grader.ros.known.releases import RELEASES, Release, is_between
 from grader.ros.known.typed_rows import read_row
 
 FOLDER = Path(__file__).with_name("ends")
@@ -22,7 +24,7 @@ _EndKind = Literal[
 ]
 
 
-class VaryingEnd(NamedTuple):
+class VaryingEnd(Named):
     """An end that parameters or releases decide.
 
     `parameter` is what names it, in place of `name`; with a star it stands for any number of
@@ -44,14 +46,13 @@ class VaryingEnd(NamedTuple):
 
     def is_in(self, release: Release) -> bool:
         """Return whether a release has it."""
-        number = RELEASES.index(release)
-        return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
+        return is_between(release, self.since, self.until)
 
 
 OnlyMore = Literal["", "subscriptions", "publishers"]
 
 
-class OpenedEnds(NamedTuple):
+class OpenedEnds(Named):
     """What a program, a component or a controller opens: names with types.
 
     A type is written `geometry_msgs.msg.Twist`. `/tf`, `/rosout` and the services of parameters are
@@ -70,14 +71,14 @@ class OpenedEnds(NamedTuple):
     varying: tuple[VaryingEnd, ...] = ()
     opens_more: str = ""  # why it may open more
     opens_only: OnlyMore = ""  # what all of this is; empty where it may be anything
-    holds: tuple[str, ...] = ()  # nodes in its process, each with a row; called NAME/NAME
+    holds: Strings = ()  # nodes in its process, each with a row; called NAME/NAME
     is_manual: bool = False  # whether a person starts it in a terminal of its own
     is_process: bool = False  # whether it is no node, or ends by itself
 
     @property
     def fixed(self) -> Iterator[tuple[_EndKind, str, str]]:
         """The kind, name and type of each end that nothing decides."""
-        tables: dict[_EndKind, Mapping[str, str]] = {
+        tables: dict[_EndKind, StringsByName] = {
             "publisher": self.publishers,
             "subscription": self.subscriptions,
             "service": self.services,
@@ -90,34 +91,33 @@ class OpenedEnds(NamedTuple):
                 yield kind, name, message
 
 
-class IncludedNode(NamedTuple):
+class IncludedNode(Named):
     """A node that an installed launch file starts under its default arguments."""
 
     node: str  # package/program
     name: str = ""  # that it is given
     remappings: Mapping[str, str] = {}
     arguments: Mapping[str, str] = {}  # the launch argument with the new name of a remapping
-    parameters: tuple[str, ...] = ()  # launch arguments that name its parameter files
+    parameters: Strings = ()  # launch arguments that name its parameter files
     since: Release = RELEASES[0]
     until: Release = RELEASES[-1]
 
     def is_in(self, release: Release) -> bool:
         """Return whether a release starts it."""
-        number = RELEASES.index(release)
-        return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
+        return is_between(release, self.since, self.until)
 
 
-class _EndsOfPackage(NamedTuple):
+class _EndsOfPackage(Named):
     """The file of a package."""
 
     source: str = ""  # of programs that name none
     program: Mapping[str, OpenedEnds] = {}  # also classes of components and controllers
     launch: Mapping[str, tuple[IncludedNode, ...]] = {}  # the nodes that a launch file starts
-    launch_parameters: tuple[str, ...] = ()  # launch arguments that name the files of all of them
+    launch_parameters: Strings = ()  # launch arguments that name the files of all of them
 
 
 @cache
-def packages_with_ends() -> tuple[str, ...]:
+def packages_with_ends() -> Strings:
     """Return the packages with a file."""
     names = os.listdir(FOLDER)  # noqa: PTH208  # Path.iterdir takes four times as long
     return tuple(sorted(name.removesuffix(_ENDING) for name in names if name.endswith(_ENDING)))
@@ -135,7 +135,7 @@ def opened_ends(package: str, program: str) -> OpenedEnds | None:
         return None
     rows = _ends_of_package(package).program
     row = rows.get(program)
-    if row is None or not row.like:
+    if not row or not row.like:
         return row
     other = rows[row.like]
     return other._replace(
@@ -156,7 +156,7 @@ def nodes_of_launch_file(package: str, file: str, release: Release) -> list[Incl
     if package not in packages_with_ends():
         return []
     of_package = _ends_of_package(package)
-    nodes: list[IncludedNode] = []
+    nodes = []
     for node in of_package.launch.get(file, ()):
         if node.is_in(release):
             parameters = node.parameters or of_package.launch_parameters
@@ -172,10 +172,10 @@ def launch_file_is_known(package: str, file: str) -> bool:
 @cache
 def manual_programs() -> tuple[tuple[str, OpenedEnds], ...]:
     """Return the programs that a person starts in a terminal, as `package/program`."""
-    programs: list[tuple[str, OpenedEnds]] = []
+    programs = []
     for package in packages_with_ends():
         for name in _ends_of_package(package).program:
             row = opened_ends(package, name)
-            if row is not None and row.is_manual:
+            if row and row.is_manual:
                 programs.append((f"{package}/{name}", row))
     return tuple(programs)

@@ -2,21 +2,22 @@
 
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import NamedTuple
 
+from grader.base.grouping import Strings, StringsByName
+from grader.base.records import Named
 from grader.ros.known.package_rows import WheelRow
 from grader.ros.known.releases import RELEASES, Release, is_before
 from grader.ros.known.typed_rows import read_file
 
 
-class _SystemTransform(NamedTuple):
+class _SystemTransform(Named):
     """The elements of a system that name the frames of its transform."""
 
     parent: str
     child: str
 
 
-class _SystemRow(NamedTuple):
+class _SystemRow(Named):
     """A system of Gazebo: topics by the elements that name them, with the types of messages."""
 
     has_odometry: bool = False
@@ -26,13 +27,13 @@ class _SystemRow(NamedTuple):
     wheels: Mapping[str, WheelRow] = {}
 
 
-class _LibraryRow(NamedTuple):
+class _LibraryRow(Named):
     """The library of a plugin of Gazebo Classic."""
 
     wheels: Mapping[str, WheelRow]
 
 
-class _SensorRow(NamedTuple):
+class _SensorRow(Named):
     """A type of sensors: the types of the messages on its topics."""
 
     topic: str = ""
@@ -41,12 +42,12 @@ class _SensorRow(NamedTuple):
     system: str = ""  # without which it publishes nothing
 
 
-class _SensorWord(NamedTuple):
+class _SensorWord(Named):
     """An element of a sensor that Gazebo reads where another one of the same meaning is missing."""
 
     name: str
     meant: str
-    of: tuple[str, ...] = ()  # types of sensors; none: of each
+    of: Strings = ()  # types of sensors; none: of each
     since: Release = RELEASES[0]  # the first release whose Gazebo reads it
     until: Release = RELEASES[-1]  # the last one
 
@@ -63,24 +64,25 @@ class _SensorWord(NamedTuple):
         )
 
 
-class _ClassicRow(NamedTuple):
+class _ClassicRow(Named):
     """What plugins of Gazebo Classic had in ROS 1, with what they have in ROS 2."""
 
     plugins: frozenset[str]  # of ROS 2, without what the names of their files have in common
     of_sensors: frozenset[str]  # those of them that sensors have
-    elements: Mapping[str, str]
-    libraries: Mapping[str, str]
+    elements: StringsByName
+    libraries: StringsByName
 
 
-class Gazebo(NamedTuple):
+class Gazebo(Named):
     """The words of Gazebo in robots, models and worlds."""
 
-    frame_elements: tuple[str, ...]
-    joint_elements: tuple[str, ...]
-    odometry_elements: tuple[str, ...]  # with frames of odometry
-    odometry_frames: tuple[str, ...]  # by default
-    sensor_types: Mapping[str, str]  # older ones, with what they are called now
+    frame_elements: Strings
+    joint_elements: Strings
+    odometry_elements: Strings  # with frames of odometry
+    odometry_frames: Strings  # by default
+    sensor_types: StringsByName  # older ones, with what they are called now
     sensor_words: tuple[_SensorWord, ...]
+    known_sensors: frozenset[str]  # all types
     passive_systems: frozenset[str]
     system: Mapping[str, _SystemRow]
     library: Mapping[str, _LibraryRow]
@@ -93,7 +95,8 @@ class Gazebo(NamedTuple):
         return [name for name, row in self.system.items() if row.has_odometry]
 
 
-NO_SYSTEM, NO_SENSOR = _SystemRow(), _SensorRow()
+NO_SYSTEM = _SystemRow()
+NO_SENSOR = _SensorRow()
 
 
 @cache

@@ -16,11 +16,13 @@ from typing import Any, Literal
 
 import tomli
 
+from grader.base.patterns import on_use
+
 FOLDER = Path(__file__).with_name("packages")
 _INDEX = FOLDER.with_name("index.toml")
 _ENDING = ".toml"
 # The first header after the facts of a package.
-_END_OF_FACTS = re.compile(r"^\[(?!\[?(?:program|controller|launch)\.)", re.MULTILINE)
+_END_OF_FACTS = on_use(r"^\[(?!\[?(?:program|controller|launch)\.)", re.MULTILINE)
 # The facts of which readers need those of all packages.
 IndexedKey = Literal[
     "action",
@@ -77,5 +79,5 @@ def _read_text(package: str) -> str:
 def split_facts(text: str) -> tuple[str, str]:
     """Return the text of the facts of a package, and of the tables after them."""
     end = _END_OF_FACTS.search(text)
-    at = end.start() if end is not None else len(text)
+    at = end.start() if end else len(text)
     return text[:at], text[at:]

@@ -7,8 +7,10 @@ The fields of a row are the keys of the files.
 
 from collections.abc import Iterator, Mapping
 from functools import cache
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
+from grader.base.grouping import Strings, StringsByName
+from grader.base.records import Named
 from grader.ros.known.package_files import (
     IndexedKey,
     facts_in_file,
@@ -18,10 +20,10 @@ from grader.ros.known.package_files import (
 from grader.ros.known.typed_rows import read_row
 
 _WheelNumber = Literal["radius", "diameter", "track", "pivots", "wheelbase", "half sum", "ring"]
-_Names = tuple[str, ...]
+_Names = Strings
 
 
-class DecidingParameter(NamedTuple):
+class DecidingParameter(Named):
     """A parameter that decides something, with its default."""
 
     parameter: str
@@ -29,7 +31,7 @@ class DecidingParameter(NamedTuple):
     off: Any = None  # the value with which it switches something off
 
 
-class _TransformRow(NamedTuple):
+class _TransformRow(Named):
     """A transform that a program or a controller publishes on /tf.
 
     It is published while the parameter `on` does not switch it off, and while the parameters in
@@ -42,7 +44,7 @@ class _TransformRow(NamedTuple):
     if_equal: tuple[DecidingParameter, ...] = ()
 
 
-class WheelRow(NamedTuple):
+class WheelRow(Named):
     """What a parameter with a number tells of the wheels of a robot.
 
     It is the radius or the diameter of the wheels in `of`; the track between the wheels or the
@@ -59,7 +61,7 @@ class WheelRow(NamedTuple):
     unless: _Names = ()  # factors that correct the number
 
 
-class GainsRow(NamedTuple):
+class GainsRow(Named):
     """The gains with which a controller computes the commands of one interface alone.
 
     There are gains for each joint, which are 0 by default, so that nothing moves.
@@ -72,7 +74,7 @@ class GainsRow(NamedTuple):
     without: Mapping[str, str] = {}  # the parameter that switches this off for an interface
 
 
-class _FeedbackRow(NamedTuple):
+class _FeedbackRow(Named):
     """The state interface of each joint that a controller reads, as one of two that a switch names.
 
     It reads none where another switch is on.
@@ -85,7 +87,7 @@ class _FeedbackRow(NamedTuple):
     unless: str  # the other switch, which is off by default
 
 
-class CommandRow(NamedTuple):
+class CommandRow(Named):
     """A topic to which a program publishes commands.
 
     It has another type if a parameter has a value.
@@ -98,7 +100,7 @@ class CommandRow(NamedTuple):
     other_type: str
 
 
-class ProgramRow(NamedTuple):
+class ProgramRow(Named):
     """A program of a package: the node that it starts, and what this opens.
 
     Types of messages are written `geometry_msgs.msg.Twist`, topics as remappings replace them.
@@ -121,7 +123,7 @@ class ProgramRow(NamedTuple):
     transforms: tuple[_TransformRow, ...] = ()
 
 
-class _ControllerRow(NamedTuple):
+class ControllerRow(Named):
     """A class of controllers, whose type is `package/class`."""
 
     source: str = ""
@@ -137,7 +139,7 @@ class _ControllerRow(NamedTuple):
     wheels: Mapping[str, WheelRow] = {}  # by its parameters with numbers
 
 
-class _LaunchFileRow(NamedTuple):
+class _LaunchFileRow(Named):
     """A launch file in the folder launch of a package."""
 
     # What it starts of robot_state_publisher, joint_state_publisher, joint_state_publisher_gui and
@@ -146,7 +148,7 @@ class _LaunchFileRow(NamedTuple):
     arguments: _Names | None = None  # None where not all are known
 
 
-class PackageRow(NamedTuple):
+class PackageRow(Named):
     """What is known of a ROS package that is not submitted; of an unknown one that is nothing."""
 
     source: str = ""
@@ -167,7 +169,7 @@ class PackageRow(NamedTuple):
     reads: _Names = ()  # parameters and arguments with files that are read, not written
     writes: _Names = ()  # files below its share folder, at run time
     program: Mapping[str, ProgramRow] = {}
-    controller: Mapping[str, _ControllerRow] = {}
+    controller: Mapping[str, ControllerRow] = {}
     launch: Mapping[str, _LaunchFileRow] = {}
 
     @property
@@ -184,7 +186,9 @@ class PackageRow(NamedTuple):
         )
 
 
-_NO_PROGRAM, _NO_CONTROLLER, _NO_PACKAGE = ProgramRow(), _ControllerRow(), PackageRow()
+_NO_PROGRAM = ProgramRow()
+_NO_CONTROLLER = ControllerRow()
+_NO_PACKAGE = PackageRow()
 
 
 def package_row(package: str) -> PackageRow:
@@ -213,7 +217,7 @@ def program_row(package: str, program: str) -> ProgramRow:
     return rows[row.like]._replace(name=row.name, usual_names=row.usual_names)
 
 
-def controller_row(kind: str | None) -> _ControllerRow:
+def controller_row(kind: str | None) -> ControllerRow:
     """Return what is known of a type of controllers; an empty row for an unknown one."""
     package, _, name = (kind or "").partition("/")
     return package_row(package).controller.get(name, _NO_CONTROLLER)
@@ -258,7 +262,7 @@ def controller_actions() -> frozenset[str]:
 @cache
 def launch_arguments() -> Mapping[str, _Names]:
     """Return the arguments of installed launch files, by their paths from share/ on."""
-    arguments: dict[str, _Names] = {}
+    arguments = {}
     for package, row in _rows_with("arguments"):
         for file, launch in row.launch.items():
             if launch.arguments is not None:
@@ -295,7 +299,7 @@ def written_files() -> frozenset[str]:
 
 
 @cache
-def usual_names() -> Mapping[str, str]:
+def usual_names() -> StringsByName:
     """Return the programs by the names that their nodes usually have."""
     return {usual: name for name, row in _programs("usual_names") for usual in row.usual_names}
 

@@ -2,51 +2,60 @@
 
 from collections.abc import Mapping
 from functools import cache
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
+from grader.base.grouping import Strings, StringsByName
+from grader.base.records import Named
 from grader.ros.known.package_files import tables_in_file
 from grader.ros.known.releases import Release
 from grader.ros.known.typed_rows import read_typed
 
+_Texts = Strings
 
-class _BridgeTable(NamedTuple):
+_Names = frozenset[str]
+
+
+class _BridgeTable(Named):
     """What the bridges of ros_gz_bridge accept."""
 
-    directions: tuple[str, ...]
-    keys: tuple[str, ...]  # that a row needs
-    types: Mapping[str, tuple[str, ...]]  # of Gazebo, by those of ROS
+    directions: _Texts
+    keys: _Texts  # that a row needs
+    types: Mapping[str, _Texts]  # of Gazebo, by those of ROS
 
 
-class _CreateTable(NamedTuple):
+class _CreateTable(Named):
     """The options of the program create of ros_gz_sim."""
 
-    options: tuple[str, ...]
-    sources: tuple[str, ...]  # of a model
-    older: Mapping[str, str]  # options of spawn_entity.py, with what they are called
+    options: _Texts
+    sources: _Texts  # of a model
+    older: StringsByName  # options of spawn_entity.py, with what they are called
 
 
-class _CppTable(NamedTuple):
+class _CppTable(Named):
     """What programs in C++ use of rclcpp and tf2_ros; the file says what each is."""
 
-    nodes: frozenset[str]  # classes
-    other_bases: frozenset[str]
-    without_nodes: frozenset[str]  # how the names of classes begin
-    reading: frozenset[str]
-    harmless: frozenset[str]
-    macros: frozenset[str]  # how their names begin
-    options: frozenset[str]
-    profiles: Mapping[str, str]  # of quality of service: depth, reliability, durability
+    nodes: _Names  # classes
+    other_bases: _Names
+    without_nodes: _Names  # how the names of classes begin
+    reading: _Names
+    harmless: _Names
+    macros: _Names  # how their names begin
+    options: _Names
+    profiles: StringsByName  # of quality of service: depth, reliability, durability
 
 
-class _PythonTable(NamedTuple):
+class _PythonTable(Named):
     """What nodes in Python use."""
 
-    node_attributes: frozenset[str]  # public ones of rclpy's nodes
-    modules: frozenset[str]  # of packages of ROS 2, in any release
-    of_ros1: frozenset[str]  # modules that no release has
+    node_attributes: _Names  # public ones of rclpy's nodes
+    of_foxy: _Names  # those that only nodes of Foxy have
+    modules: _Names  # of packages of ROS 2, in any release
+    of_ros1: _Names  # modules that no release has
+    members: Mapping[str, _Names]  # the attributes of what a node gives
+    gone: Mapping[str, Release]  # names of other modules, by the first release without them
 
 
-class StartRow(NamedTuple):
+class StartRow(Named):
     """A node or an include that a launch function of MoveIt starts.
 
     "$name" is the value of a launch argument, {package} the folder of the configuration, {folder}
@@ -59,13 +68,13 @@ class StartRow(NamedTuple):
     only_if: str = ""  # a launch argument is true
     debug: bool = False  # whether it is started with or without a debugger
     arguments: tuple[Any, ...] = ()
-    parts: tuple[str, ...] = ()  # of the configuration
+    parts: _Texts = ()  # of the configuration
     parameters: Mapping[str, Any] = {}
-    files: tuple[str, ...] = ()
-    remappings: tuple[tuple[str, ...], ...] = ()
+    files: _Texts = ()
+    remappings: tuple[_Texts, ...] = ()
 
 
-class _LaunchFunction(NamedTuple):
+class _LaunchFunction(Named):
     """A function of moveit_configs_utils.launches."""
 
     start: tuple[StartRow, ...]
@@ -74,7 +83,7 @@ class _LaunchFunction(NamedTuple):
 
 
 INTERFACE_KINDS = ("msg", "srv", "action")
-_Words = Mapping[str, str]
+_Words = StringsByName
 _Signatures = Mapping[str, Mapping[Release, str]]
 TABLES: Mapping[str, Mapping[str, Any]] = {  # the types of the tables of each package
     "cv_bridge": {"encodings": Mapping[str, int]},
@@ -85,7 +94,7 @@ TABLES: Mapping[str, Mapping[str, Any]] = {  # the types of the tables of each p
     "rclpy": {"python": _PythonTable, "calls": _Signatures},
     "ros_gz_bridge": {"bridge": _BridgeTable},
     "ros_gz_sim": {"create": _CreateTable},
-    "rviz_default_plugins": {"displays": _Words},
+    "rviz_default_plugins": {"displays": _Words, "classes": Mapping[str, Strings]},
     "tf2_ros": {"calls": _Signatures},
 }
 
@@ -148,6 +157,11 @@ def create_table() -> _CreateTable:
 def display_types() -> _Words:
     """Return the types of messages that displays of rviz_default_plugins read."""
     return cast("_Words", _table("rviz_default_plugins", "displays"))
+
+
+def rviz_classes() -> Mapping[str, _Texts]:
+    """Return the classes of rviz_default_plugins, by where a file of RViz has them."""
+    return cast("Mapping[str, Strings]", _table("rviz_default_plugins", "classes"))
 
 
 def call_signatures() -> _Signatures:

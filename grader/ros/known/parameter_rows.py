@@ -8,19 +8,22 @@ docs/known-parameters.md describes the form of a row.
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
+from grader.base.grouping import Strings, as_list, only_one
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.ros.known.package_files import packages_with_files, tables_in_file
 from grader.ros.known.package_rows import usual_names
-from grader.ros.known.releases import RELEASES, Release, is_before
+from grader.ros.known.releases import RELEASES, Release, Releases, is_before, is_between
 from grader.ros.known.typed_rows import read_row
 
 # From Humble on, without Rolling, which changes.
-COVERED: tuple[Release, ...] = RELEASES[RELEASES.index("humble") : -1]
+COVERED: Releases = RELEASES[RELEASES.index("humble") : -1]
 # The last release in which a table was read that does not say it.
 _READ: Release = "kilted"
-_PLACE = re.compile(r"<([^<>]+)>")
-_SEPARATOR = re.compile("/|::")
+_PLACE = on_use(r"<([^<>]+)>")
+_SEPARATOR = on_use("/|::")
 _NUMBER, _REST = "#", "**"
 _FIELDS = {  # by the keys of the files, where they have another name
     "required": "is_required",
@@ -32,7 +35,7 @@ _FIELDS = {  # by the keys of the files, where they have another name
 }
 
 
-class ParameterRow(NamedTuple):
+class ParameterRow(Named):
     """A parameter of a node, in some releases.
 
     Parts of a name in angle brackets stand for others: `<joints>` for an entry of the list
@@ -50,9 +53,9 @@ class ParameterRow(NamedTuple):
     lower: float | None = None
     upper: float | None = None
     one_of: tuple[Any, ...] = ()
-    entries: tuple[str, ...] = ()  # what a list may have
+    entries: Strings = ()  # what a list may have
     size: int | None = None  # of a list
-    libraries: tuple[str, ...] = ()  # of plugins that the package has in these releases
+    libraries: Strings = ()  # of plugins that the package has in these releases
     loads_libraries: bool = False  # whether the node loads them itself, and stops at a second time
     since: Release = COVERED[0]
     until: Release = COVERED[-1]
@@ -60,8 +63,7 @@ class ParameterRow(NamedTuple):
 
     def is_in(self, release: Release) -> bool:
         """Return whether a release has it."""
-        number = RELEASES.index(release)
-        return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
+        return is_between(release, self.since, self.until)
 
     @property
     def pattern(self) -> re.Pattern[str]:
@@ -87,13 +89,13 @@ class ParameterRow(NamedTuple):
         return f"{self.since.title()} to {self.until.title()}"
 
 
-class NodeRows(NamedTuple):
+class NodeRows(Named):
     """What a node, a controller or a plugin reads: its parameters, with where that is written."""
 
     node: str
     source: str
     rows: tuple[ParameterRow, ...]
-    open_in: tuple[Release, ...] = ()  # the releases in which it reads more than the rows say
+    open_in: Releases = ()  # the releases in which it reads more than the rows say
     takes_any_type: bool = False
     since: Release = COVERED[0]
     until: Release = COVERED[-1]
@@ -103,13 +105,12 @@ class NodeRows(NamedTuple):
     def own_rows(self) -> tuple[ParameterRow, ...]:
         """The rows that no other node has before it."""
         table = _find_table(self.node)
-        parameters = table.parameters if table is not None else {}
+        parameters = table.parameters if table else {}
         return tuple(row for row in self.rows if row.name in parameters)
 
     def is_in(self, release: Release) -> bool:
         """Return whether a release has the node."""
-        number = RELEASES.index(release)
-        return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
+        return is_between(release, self.since, self.until)
 
     def is_known_in(self, release: Release) -> bool:
         """Return whether it is known what it reads in a release."""
@@ -120,11 +121,11 @@ class NodeRows(NamedTuple):
         return tuple(row for row in self.rows if row.is_in(release))
 
 
-class NodeTable(NamedTuple):
+class NodeTable(Named):
     """The table of a node in the file of its package."""
 
     source: str = ""
-    also: tuple[str, ...] = ()  # the nodes whose rows it has too
+    also: Strings = ()  # the nodes whose rows it has too
     open: Any = False  # whether it reads more than its rows, or the releases in which it does
     any_type: bool = False
     since: Release = COVERED[0]
@@ -141,7 +142,7 @@ def find_rows(node: str, release: Release | None = None) -> tuple[ParameterRow, 
         release: The release; None for the rows of all.
     """
     known = node_rows(node)
-    if known is None:
+    if not known:
         return ()
     return known.rows if release is None else known.in_release(release)
 
@@ -153,12 +154,12 @@ def row_for(node: str, parameter: str, release: Release | None = None) -> Parame
     """
     rows = find_rows(node, release)
     for row in rows[::-1]:
-        if row.pattern.fullmatch(parameter) is not None:
+        if row.pattern.fullmatch(parameter):
             return row
     return None
 
 
-def known_nodes() -> tuple[str, ...]:
+def known_nodes() -> Strings:
     """Return all nodes, controllers and plugins that have rows."""
     nodes: list[str] = []
     for package in sorted(packages_with_files()):
@@ -179,26 +180,26 @@ def node_called(name: str) -> str | None:
     """
     if name in usual_names():
         return usual_names()[name]
-    if node_rows(name) is not None:
+    if node_rows(name):
         return name
     ends = [node for node in known_nodes() if name in (_SEPARATOR.split(node)[0], node)]
     ends = ends or [node for node in known_nodes() if _SEPARATOR.split(node)[-1] == name]
-    return ends[0] if len(ends) == 1 else None
+    return only_one(ends)
 
 
 @cache
 def node_rows(node: str) -> NodeRows | None:
     """Return the rows of a node, with those of what it is made of; None for one without rows."""
     table = _find_table(node)
-    if table is None:
+    if not table:
         return None
-    rows = [*read_rows(table.parameters)]
+    rows = list(read_rows(table.parameters))
     open_in = table.open
     if isinstance(open_in, bool):
-        open_in = [*COVERED] if open_in else []
+        open_in = list(COVERED) if open_in else []
     for other in table.also:
         known = node_rows(other)
-        assert known is not None, other
+        assert known, other
         written = {row.name for row in rows}
         rows += (row for row in known.rows if row.name not in written)
     return NodeRows(
@@ -221,14 +222,14 @@ def _find_table(node: str) -> NodeTable | None:
 def read_rows(parameters: Mapping[str, Any]) -> Iterator[ParameterRow]:
     """Yield the rows of the parameters of a node. Raises ValueError for an unknown key."""
     for name, written in parameters.items():
-        for keys in written if isinstance(written, list) else [written]:
+        for keys in as_list(written):
             fields = {_FIELDS.get(key, key): value for key, value in keys.items()}
             yield read_row(ParameterRow, {"name": name, **fields})
 
 
 @cache
 def _make_pattern(name: str) -> re.Pattern[str]:
-    parts: list[str] = []
+    parts = []
     for number, part in enumerate(_PLACE.split(name)):
         if number % 2 == 0:
             parts.append(re.escape(part))

@@ -20,7 +20,7 @@ def parameter_explanation(name: str) -> str:
     written, _, parameter = name.partition(".")
     node = node_called(written)
     known = node_rows(node) if node is not None else None
-    if known is None:
+    if not known:
         return ""
     if not parameter:
         lines = [f"{row.name}: {_summary(row)}" for row in known.rows]
@@ -84,7 +84,7 @@ def _accepted_values(row: ParameterRow) -> Iterator[str]:
     if limits:
         yield f"value: {enumerated(limits)}"
     if row.one_of:
-        yield f"value: {enumerated([*map(_value, row.one_of)], word='or')}"
+        yield f"value: {enumerated(map(_value, row.one_of), word='or')}"
 
 
 def _releases(row: ParameterRow, read: Release) -> str:

@@ -11,11 +11,11 @@ from typing import Any
 
 import tomli
 
-from grader.ros.known.releases import Release
+from grader.ros.known.releases import Release, Releases
 
 PYTHON_NAMES_FILE = Path(__file__).with_suffix(".toml")
 MODULES = ""  # the key of the names of all modules
-_DEFAULT: tuple[Release, ...] = ("jazzy",)
+_DEFAULT: Releases = ("jazzy",)
 
 
 @cache
@@ -36,7 +36,7 @@ def _version(release: Release) -> str:
 
 
 @cache
-def python_names(key: str, releases: tuple[Release, ...] = ()) -> frozenset[str]:
+def python_names(key: str, releases: Releases = ()) -> frozenset[str]:
     """Return the names that a module, or a type of values, has in one of some releases.
 
     >>> "batched" in python_names("itertools"), "batched" in python_names("itertools", ("humble",))

@@ -9,19 +9,20 @@ import lzma
 from collections.abc import Collection, Mapping
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
 
-from grader.ros.known.releases import RELEASES, Release
+from grader.base.grouping import StringsByName
+from grader.base.records import Named
+from grader.ros.known.releases import RELEASES, Release, Releases
 
 RELEASED_FILE = Path(__file__).with_name("rosdistro.json.xz")
 
 
-class _ReleasedTable(NamedTuple):
+class _ReleasedTable(Named):
     """The packages by their names, and the day of the commit that they were read from."""
 
     date: str
     releases: Mapping[str, frozenset[Release]]
-    repositories: Mapping[str, str]
+    repositories: StringsByName
     metapackages: frozenset[str]
     by_repository: Mapping[str, frozenset[str]]
     rosdep: frozenset[str]
@@ -30,11 +31,11 @@ class _ReleasedTable(NamedTuple):
 @cache
 def _table() -> _ReleasedTable:
     data = json.loads(lzma.decompress(RELEASED_FILE.read_bytes()))
-    releases_by_name: dict[str, frozenset[Release]] = {}
-    repositories: dict[str, str] = {}
-    by_repository: dict[str, frozenset[str]] = {}
+    releases_by_name = {}
+    repositories = {}
+    by_repository = {}
     for repository, groups in data["repositories"].items():
-        names: set[str] = set()
+        names = set()
         for words, group in groups.items():
             releases = frozenset(release for release in RELEASES if release in words.split())
             for name in group.split():
@@ -63,7 +64,7 @@ def is_released(name: str, releases: Collection[Release] = ()) -> bool:
     return bool(having) and (not releases or not having.isdisjoint(releases))
 
 
-def find_releases(name: str) -> tuple[Release, ...]:
+def find_releases(name: str) -> Releases:
     """Return the releases for which a package is released, in their order.
 
     >>> find_releases("ros_ign_bridge")

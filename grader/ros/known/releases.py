@@ -3,15 +3,18 @@
 from collections.abc import Collection, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, get_args
 
 import tomli
 
+from grader.base.grouping import Strings
+from grader.base.records import Named
 from grader.base.text import enumerated
 
 # A release of ROS 2, oldest first: https://docs.ros.org/en/rolling/Releases.html
 Release = Literal["foxy", "galactic", "humble", "iron", "jazzy", "kilted", "lyrical", "rolling"]
-RELEASES: tuple[Release, ...] = get_args(Release)
+Releases = tuple[Release, ...]
+RELEASES: Releases = get_args(Release)
 NameKind = Literal[
     "plugin",
     "controller",
@@ -23,19 +26,20 @@ NameKind = Literal[
     "topic",
     "argument",
     "class",
+    "header",
 ]
 _FILE = Path(__file__).with_name("releases.toml")
 _MAX_PLACES = 2  # files that are named
 
 
-class StatedReleases(NamedTuple):
+class StatedReleases(Named):
     """The releases that a workspace is for, and the files or the option that say so.
 
     Names of every release are accepted if there are none.
     """
 
-    releases: tuple[Release, ...] = ()
-    places: tuple[str, ...] = ()
+    releases: Releases = ()
+    places: Strings = ()
 
     @property
     def words(self) -> str:
@@ -49,7 +53,7 @@ class StatedReleases(NamedTuple):
 NOT_STATED = StatedReleases()
 
 
-class _ReleaseName(NamedTuple):
+class _ReleaseName(Named):
     """A name in the releases from one on, up to another one.
 
     A star at its end stands for the rest.
@@ -86,7 +90,7 @@ class _ReleaseName(NamedTuple):
         return start + name.removeprefix(other.name.removesuffix("*"))
 
 
-class _OtherName(NamedTuple):
+class _OtherName(Named):
     """What a name of other releases is called, in words; and the name, empty without one."""
 
     message: str
@@ -108,7 +112,7 @@ def other_name(
     """
     row = _row_with(kind, name)
     named_row = next((other for other in row if other.matches(name)), None)
-    if named_row is None or not releases or any(map(named_row.is_in, releases)):
+    if not named_row or not releases or any(map(named_row.is_in, releases)):
         return None
     release = min(releases, key=RELEASES.index)
     is_later = RELEASES.index(release) > named_row.last
@@ -136,7 +140,7 @@ def _renamed(
 
 def names_in(kind: NameKind) -> Sequence[str]:
     """Return the names of a kind, each once; with a star for the rest of some."""
-    return [*dict.fromkeys(name.name for row in _rows(kind) for name in row)]
+    return list(dict.fromkeys(name.name for row in _rows(kind) for name in row))
 
 
 def names_without(kind: NameKind, releases: Collection[Release]) -> Sequence[str]:
@@ -148,6 +152,11 @@ def names_without(kind: NameKind, releases: Collection[Release]) -> Sequence[str
 def is_before(release: Release, other: Release) -> bool:
     """Return whether a release is older than another one."""
     return RELEASES.index(release) < RELEASES.index(other)
+
+
+def is_between(release: Release, first: Release, last: Release) -> bool:
+    """Return whether a release is one of those from one to another."""
+    return RELEASES.index(first) <= RELEASES.index(release) <= RELEASES.index(last)
 
 
 def releases_with(kind: NameKind, name: str) -> Sequence[Release]:

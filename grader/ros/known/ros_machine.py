@@ -2,17 +2,18 @@
 
 from collections.abc import Mapping
 from functools import cache
-from typing import NamedTuple
 
+from grader.base.grouping import Strings
+from grader.base.records import Named
 from grader.ros.known.typed_rows import read_file
 
 
-class RosMachine(NamedTuple):
+class RosMachine(Named):
     """What every machine with ROS 2 has, besides packages."""
 
-    imported_by_launch: tuple[str, ...]  # Python packages
-    environment: tuple[str, ...]  # variables that are set
-    ending_commands: Mapping[str, tuple[str, ...]]  # with the options with which they do not end
+    imported_by_launch: Strings  # Python packages
+    environment: Strings  # variables that are set
+    ending_commands: Mapping[str, Strings]  # with the options with which they do not end
 
 
 @cache

@@ -2,19 +2,20 @@
 
 from collections.abc import Mapping
 from functools import cache
-from typing import NamedTuple
 
+from grader.base.grouping import Strings, StringsByName
+from grader.base.records import Named
 from grader.ros.known.typed_rows import read_file
 
 
-class RosdepWords(NamedTuple):
+class RosdepWords(Named):
     """Names that are no keys of rosdep, with the key of what they name."""
 
-    instead: Mapping[str, str]
-    elsewhere: Mapping[str, str]  # how package.xml says it
-    modules: Mapping[str, str]  # of Python, with their keys
-    libraries: Mapping[str, str]  # that find_package() of CMake finds, with their keys
-    alike: Mapping[str, tuple[str, ...]]  # other keys with which the same is installed
+    instead: StringsByName
+    elsewhere: StringsByName  # how package.xml says it
+    modules: StringsByName  # of Python, with their keys
+    libraries: StringsByName  # that find_package() of CMake finds, with their keys
+    alike: Mapping[str, Strings]  # other keys with which the same is installed
     brought: Mapping[str, frozenset[str]]  # by a key the packages that install it
 
 

@@ -1,17 +1,18 @@
 """Names that mean the same in all packages: the file shared_names.toml."""
 
 from functools import cache
-from typing import NamedTuple
 
+from grader.base.grouping import Strings
+from grader.base.records import Named
 from grader.ros.known.typed_rows import read_file
 
 
-class SharedNames(NamedTuple):
+class SharedNames(Named):
     """Names that mean the same in all packages; the file says whose they are."""
 
-    frames: tuple[str, ...]  # that are there without the robot
-    topics: tuple[str, ...]  # of programs that a person starts, and of drivers
-    clock_words: tuple[str, ...]  # of what may publish /clock
+    frames: Strings  # that are there without the robot
+    topics: Strings  # of programs that a person starts, and of drivers
+    clock_words: Strings  # of what may publish /clock
 
 
 @cache

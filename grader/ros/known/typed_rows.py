@@ -31,7 +31,7 @@ def read_row(kind: Callable[..., _Row], table: Mapping[str, Any]) -> _Row:
         ValueError: a Wheel has no 'raduis'
     """
     readings = _list_readings(kind)
-    values: dict[str, Any] = {}
+    values = {}
     for key, value in table.items():
         if key not in readings:
             raise ValueError(f"a {getattr(kind, '__name__', kind)} has no {key!r}")
@@ -64,7 +64,8 @@ def _list_readings(kind: Callable[..., Any]) -> Mapping[str, _Reading]:
 @cache
 def _choose_reading(hint: Any) -> _Reading:
     """Return the function that reads values of a type."""
-    origin, arguments = get_origin(hint), get_args(hint)
+    origin = get_origin(hint)
+    arguments = get_args(hint)
     if origin is UnionType:
         [hint] = [argument for argument in arguments if argument is not NoneType]
         return _choose_reading(hint)
@@ -95,7 +96,7 @@ def _checked(value: Any, kind: type) -> Any:
     return value
 
 
-_COLLECTIONS: Mapping[Any, Callable[[Sequence[Any]], _Reading]] = {
+_COLLECTIONS = {
     tuple: _choose_items,
     frozenset: _choose_words,
     Mapping: _choose_table,

@@ -10,7 +10,10 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from grader.base import markup
+from grader.base.grouping import Span
+from grader.base.patterns import on_use
 from grader.base.source import Source
+from grader.base.text import blanked
 from grader.ros.python.parse import Code, location_in, make_position, parse
 from grader.ros.python.walking import walk
 from grader.ros.xml.parsing import XmlFault, XmlFile
@@ -25,11 +28,11 @@ _CALLS = {
     "LaunchConfigurationEquals": ("launch_configuration_name", False),
     "LaunchConfigurationNotEquals": ("launch_configuration_name", False),
 }
-_OPENING = re.compile(r"(?i:[rbuf]{0,2})(\"{3}|'{3}|\"|')")
-_VARIABLE = re.compile(r"\$\(\s*var\s+['\"]?([\w.-]+)")
-_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
-_YAML_COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*")
-_YAML_ARGUMENT = re.compile(
+_OPENING = on_use(r"(?i:[rbuf]{0,2})(\"{3}|'{3}|\"|')")
+_VARIABLE = on_use(r"\$\(\s*var\s+['\"]?([\w.-]+)")
+_COMMENT = on_use(r"<!--.*?(?:-->|\Z)", re.DOTALL)
+_YAML_COMMENT = on_use(r"(?:^|(?<=\s))#[^\n]*")
+_YAML_ARGUMENT = on_use(
     r"-\s+(?:arg|let)\s*+:\s*+(?:\{\s*+)?(?:[\w-]+\s*:[^\n{}]{0,200}\n\s*)*?name\s*:\s*['\"]?([\w.-]+)"
 )
 
@@ -50,11 +53,11 @@ def argument_names(data: bytes, path: str) -> tuple[Source, list[_ArgumentName]]
     """
     if path.endswith(".py"):
         code = parse(data, path)
-        names = [*_in_python(code)] if isinstance(code, Code) else []
+        names = list(_in_python(code)) if isinstance(code, Code) else []
         return code.source, sorted(names, key=lambda argument: argument.start)
-    source = Source(path, data.decode("utf-8", "replace"))
+    source = Source.decoded(path, data)
     read = _in_yaml(source) if path.endswith((".yaml", ".yml")) else _in_xml(data, source)
-    names = [*read]
+    names = list(read)
     return source, sorted(names, key=lambda argument: argument.start)
 
 
@@ -69,19 +72,19 @@ def _in_python(code: Code) -> Iterator[_ArgumentName]:
             continue
         keyword, is_definition = _CALLS[called]
         named = [given.value for given in node.keywords if given.arg == keyword]
-        for value in (*node.args[:1], *named):
+        for value in node.args[:1] + named:
             span = _span_of_text(code.source, value)
             if span is not None and isinstance(value, ast.Constant):
                 yield _ArgumentName(str(value.value), is_definition, *span)
 
 
-def _span_of_text(source: Source, value: ast.expr) -> tuple[int, int] | None:
+def _span_of_text(source: Source, value: ast.expr) -> Span | None:
     """Return the offsets of a text without its quotes; None for what is no plain text."""
     if not isinstance(value, ast.Constant) or not isinstance(value.value, str):
         return None
     at = location_in(source, make_position(value))
     opened = _OPENING.match(source.text, source.start_offset(at))
-    if opened is None:
+    if not opened:
         return None
     end = opened.end() + len(value.value)
     is_plain = source.text[opened.end() : end] == value.value
@@ -96,16 +99,20 @@ def _in_xml(data: bytes, source: Source) -> Iterator[_ArgumentName]:
             at = file.location(element)
             start = source.start_offset(at)
             name = markup.attribute(source.text, start, "name")
-            if name is not None and (parent is None or parent.tag != "include"):
+            if name and (parent is None or parent.tag != "include"):
                 yield _ArgumentName(source.text[slice(*name.value)], True, *name.value)
-    text = _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
-    for match in _VARIABLE.finditer(text):
-        yield _ArgumentName(match[1], False, *match.span(1))
+    yield from _matches(_VARIABLE, _COMMENT, source, is_defined=False)
 
 
 def _in_yaml(source: Source) -> Iterator[_ArgumentName]:
-    text = _YAML_COMMENT.sub(lambda match: " " * len(match[0]), source.text)
-    for match in _YAML_ARGUMENT.finditer(text):
-        yield _ArgumentName(match[1], True, *match.span(1))
-    for match in _VARIABLE.finditer(text):
-        yield _ArgumentName(match[1], False, *match.span(1))
+    yield from _matches(_YAML_ARGUMENT, _YAML_COMMENT, source, is_defined=True)
+    yield from _matches(_VARIABLE, _YAML_COMMENT, source, is_defined=False)
+
+
+def _matches(
+    names: re.Pattern[str], comments: re.Pattern[str], source: Source, *, is_defined: bool
+) -> Iterator[_ArgumentName]:
+    """Yield the names that a pattern finds outside of comments."""
+    text = comments.sub(blanked, source.text)
+    for match in names.finditer(text):
+        yield _ArgumentName(match[1], is_defined, *match.span(1))

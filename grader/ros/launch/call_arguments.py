@@ -7,12 +7,14 @@ An argument is a text (a string or substitutions), a list of them, a parameter o
 """
 
 from ast import expr, unparse
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import PurePosixPath
-from typing import Any, NamedTuple
+from typing import Any
 
+from grader.base.grouping import as_list
 from grader.base.names import did_you_mean
+from grader.base.records import Named
 from grader.ros.launch.launch_classes import (
     ENTITY,
     JOINED_PATH,
@@ -56,7 +58,7 @@ OPENED = {
     "xacro.process_file": "a document, not its text: add .toxml()",
     "xacro.parse": "a document, not its text: add .toxml()",
 }
-_COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *VIEWS)
+_COLLECTIONS = (list, tuple, dict, set, frozenset, *VIEWS)
 _NAMES = {
     type(None): "None",
     bool: "a boolean",
@@ -143,16 +145,13 @@ def _find_function(name: str) -> "Callable[[Evaluation, Call], Value] | None":
     It fails for a name that is not there.
     """
     owner, _, member = name.rpartition(".")
-    names, cls = exports().get(owner), class_named(owner)
+    names = exports().get(owner)
+    cls = class_named(owner)
     if names is not None and member in names:
         made = class_named(names[member])
-        return partial(_record_constructor, made) if made is not None else None
-    if names is not None or (
-        cls is not None and member not in cls.methods and not member.startswith("_")
-    ):
-        return partial(
-            _fail_missing, f"{cls.short if cls is not None else owner} has no {member!r}"
-        )
+        return partial(_record_constructor, made) if made else None
+    if names is not None or (cls and member not in cls.methods and not member.startswith("_")):
+        return partial(_fail_missing, f"{cls.short if cls else owner} has no {member!r}")
     return None
 
 
@@ -162,7 +161,7 @@ def _record_constructor(cls: LaunchClass, evaluation: Evaluation, call: Call) ->
     call.is_object = True
     for name in [name for name in call.kwargs if name != _KEPT_AS_IT_IS.get(cls.short)]:
         call.kwargs[name] = _copied(call.kwargs[name], evaluation)
-    if doubt is not None:
+    if doubt:
         reason = not_evaluated(doubt.reason)
         evaluation.doubted(Unknown(reason, doubt.at, follows_error=doubt.follows_error))
     return record(evaluation, call)
@@ -170,9 +169,10 @@ def _record_constructor(cls: LaunchClass, evaluation: Evaluation, call: Call) ->
 
 def join_path(evaluation: Evaluation, call: Call) -> Value:
     """Return the PathJoinSubstitution that `path / more` makes of a substitution for a path."""
-    owner, cls = call.owner, class_named(JOINED_PATH)
-    assert owner is not None
-    assert cls is not None
+    owner = call.owner
+    cls = class_named(JOINED_PATH)
+    assert owner
+    assert cls
     before = listed(owner.kwargs["substitutions"]) if owner.name == JOINED_PATH else [owner]
     parts = [*before, *call.args]
     return _record_constructor(cls, evaluation, Call("", [parts], {}, call.at))
@@ -186,7 +186,7 @@ def texts_from_paths(cls: LaunchClass, call: Call) -> list[str]:
 
 def _has_path(value: Value) -> bool:
     if isinstance(value, dict):
-        value = [*value.values()]
+        value = list(value.values())
     return isinstance(value, PurePosixPath) or (
         isinstance(value, list | tuple) and any(map(_has_path, value))
     )
@@ -217,7 +217,7 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
     if cls.short not in _EVALUATED and not is_a(cls.name, SOURCE):
         return Unknown(f"{cls.short} is not evaluated", call.at)
     _name_arguments(cls, call)
-    doubt: Unknown | None = None
+    doubt = None
     for name, value in [*call.kwargs.items(), ("", None)]:
         try:
             if message := _wrong_argument(cls, call, name, value):
@@ -241,7 +241,8 @@ def _name_arguments(cls: LaunchClass, call: Call) -> None:
     for name, value in given.items():
         if isinstance(value, Items):
             given[name] = list(iterate(value))
-    call.args, call.kwargs = [], given
+    call.args = []
+    call.kwargs = given
     for name, row in cls.parameters.items():
         if row.is_required and name not in given:
             raise EvaluationFails(f"{cls.short} needs the argument {name}=...", call.at)
@@ -262,13 +263,14 @@ def _given_by_place(cls: LaunchClass, call: Call) -> dict[str, Value]:
     return dict(zip(positional, call.args, strict=False))
 
 
-class _Fault(NamedTuple):
+class _Fault(Named):
     """What is wrong with an argument, after its name."""
 
     message: str
     is_of_part: bool = False  # whether it says what is wrong inside the argument, and what that is
 
 
+_Wrong = _Fault | None
 _NO_LIST = _Fault("has to be a list: put [ ] around it")
 
 
@@ -296,11 +298,19 @@ def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> st
 
 
 def _find_bound(value: Value) -> expr | None:
-    """Return the expression of a method in a value that is not called."""
+    """Return the expression of a method in a value that is not called.
+
+    Raises Undetermined for what may be a property of an object of launch.
+    """
     if isinstance(value, list | tuple | dict):
         items = value.values() if isinstance(value, dict) else value
         return next(filter(None, map(_find_bound, items)), None)
-    return value.node if isinstance(value, BoundMethod) else None
+    match value:
+        case BoundMethod(owner=Call(name=name)) if class_named(name):
+            raise Undetermined(f"the value of {value.name}")
+        case BoundMethod():
+            return value.node
+    return None
 
 
 def _is_text(value: Value) -> bool:
@@ -314,7 +324,7 @@ def _is_text(value: Value) -> bool:
             raise Undetermined(f"the value of {value.name}")
         case PurePosixPath():  # since launch 3.4.10
             return True
-        case Call() if class_named(value.name) is not None:
+        case Call() if class_named(value.name):
             return is_a(value.name, SUBSTITUTION)
         case Call() if value.name not in OPENED:
             raise Undetermined(f"the result of {value.name}")
@@ -323,7 +333,7 @@ def _is_text(value: Value) -> bool:
 
 def _is_entity(call: Call) -> bool:
     """Return whether a call makes an action, or a description of some. Raises Undetermined."""
-    if class_named(call.name) is None:
+    if not class_named(call.name):
         raise Undetermined(f"the result of {call.name}")
     return is_a(call.name, ENTITY)
 
@@ -332,15 +342,15 @@ def items_in(value: Value) -> list[Value] | None:
     """Return what iterating over a value gives; None where Python cannot. Raises Undetermined."""
     if isinstance(value, Unknown):
         raise value.as_signal()
-    if isinstance(value, Call) and class_named(value.name) is None:
+    if isinstance(value, Call) and not class_named(value.name):
         raise Undetermined(f"the result of {value.name}")
     if isinstance(value, Items):
         return list(iterate(value))
-    kinds: Any = (*_COLLECTIONS, str, range)
+    kinds = (*_COLLECTIONS, str, range)
     return list(value) if isinstance(value, kinds) else None
 
 
-def _wrong_text(value: Value) -> _Fault | None:
+def _wrong_text(value: Value) -> _Wrong:
     """Return what is wrong with a value that has to be a text. Raises Undetermined."""
     if isinstance(value, _COLLECTIONS):
         for item in value:
@@ -358,8 +368,8 @@ def _wrong_in(item: Value) -> _Fault:
     return _Fault(f"has an item that is {describe_kind(item)}{hint}", is_of_part=True)
 
 
-def _first_fault(faults: Iterable[_Fault | None]) -> _Fault | None:
-    return next((fault for fault in faults if fault is not None), None)
+def _first_fault(faults: Iterable[_Wrong]) -> _Wrong:
+    return next((fault for fault in faults if fault), None)
 
 
 def describe_kind(value: Value) -> str:
@@ -371,11 +381,11 @@ def describe_kind(value: Value) -> str:
     return _NAMES.get(type(value), f"a {type(value).__name__}")
 
 
-def _check_of_type(kind: type) -> Callable[[Value], _Fault | None]:
+def _check_of_type(kind: type) -> Callable[[Value], _Wrong]:
     """Return the check of a value of a type, or of a substitution whose text is read as one."""
     fault = _Fault(f"takes {_WANTED[kind]} or a substitution")
 
-    def checked(value: Value) -> _Fault | None:
+    def checked(value: Value) -> _Wrong:
         if isinstance(value, str | int | float):
             return None if isinstance(value, kind) else fault
         if isinstance(value, list | tuple) and any(
@@ -389,7 +399,7 @@ def _check_of_type(kind: type) -> Callable[[Value], _Fault | None]:
     return checked
 
 
-def _wrong_parameters(value: Value) -> _Fault | None:
+def _wrong_parameters(value: Value) -> _Wrong:
     """Return what is wrong with the parameters of a node. Raises Undetermined."""
     if isinstance(value, Unknown):
         raise value.as_signal()
@@ -398,7 +408,7 @@ def _wrong_parameters(value: Value) -> _Fault | None:
     return _first_fault(map(_wrong_item, value))
 
 
-def _wrong_item(item: Value) -> _Fault | None:
+def _wrong_item(item: Value) -> _Wrong:
     if isinstance(item, PurePosixPath) or (isinstance(item, Call) and item.name in (*TYPED, FILE)):
         return None
     if isinstance(item, dict):
@@ -406,15 +416,15 @@ def _wrong_item(item: Value) -> _Fault | None:
     return _wrong_text(item)
 
 
-def _wrong_dict(table: dict[Any, Value]) -> _Fault | None:
+def _wrong_dict(table: dict[Any, Value]) -> _Wrong:
     for key, value in table.items():
         fault = _wrong_text(key) or _wrong_parameter(value)
-        if fault is not None:
+        if fault:
             return fault
     return None
 
 
-def _wrong_parameter(value: Value) -> _Fault | None:
+def _wrong_parameter(value: Value) -> _Wrong:
     """Return what is wrong with the value of a parameter. Raises Undetermined."""
     match value:
         case dict():
@@ -433,7 +443,8 @@ def _wrong_parameter(value: Value) -> _Fault | None:
 
 def _wrong_typed(call: Call) -> str:
     """Return what is wrong with the value of ParameterValue, or nothing. Raises Undetermined."""
-    value, kind = call.kwargs["value"], read_type(call)
+    value = call.kwargs["value"]
+    kind = read_type(call)
     if isinstance(value, UnknownText):
         return "" if kind in (None, str) else "the value is a text"
     if isinstance(value, SCALARS):
@@ -446,7 +457,7 @@ def _wrong_typed(call: Call) -> str:
         is_wrong = kind is not None or not all(isinstance(element, SCALARS) for element in value)
         return f"the value is {describe_kind(value)}" if is_wrong else ""
     fault = _wrong_text(value)
-    return fault.message if fault is not None else ""
+    return fault.message if fault else ""
 
 
 def read_type(call: Call) -> "type | None":
@@ -464,7 +475,7 @@ def read_type(call: Call) -> "type | None":
     return scalar
 
 
-def _wrong_texts(value: Value) -> _Fault | None:
+def _wrong_texts(value: Value) -> _Wrong:
     items = items_in(value)
     if items is None:
         return _NO_LIST
@@ -474,7 +485,7 @@ def _wrong_texts(value: Value) -> _Fault | None:
     return _first_fault(map(_wrong_text, items))
 
 
-def _wrong_path(value: Value) -> _Fault | None:
+def _wrong_path(value: Value) -> _Wrong:
     """Return what is wrong with the parts of a path: each is a text, or a list of its parts."""
     if not isinstance(value, list | tuple):
         return _wrong_text(value)
@@ -484,30 +495,30 @@ def _wrong_path(value: Value) -> _Fault | None:
     return _first_fault(map(_wrong_text, value))
 
 
-def _wrong_boolean_text(value: Value) -> _Fault | None:
+def _wrong_boolean_text(value: Value) -> _Wrong:
     return None if isinstance(value, bool) else _wrong_text(value)
 
 
-def _wrong_mapping(value: Value) -> _Fault | None:
+def _wrong_mapping(value: Value) -> _Wrong:
     if isinstance(value, dict):
         return _first_fault(_wrong_text(item) for pair in value.items() for item in pair)
     items_in(value)  # raises Undetermined for what may be a dict
     return _Fault("has to be a dict")
 
 
-def _wrong_period(value: Value) -> _Fault | None:
+def _wrong_period(value: Value) -> _Wrong:
     if isinstance(value, str):  # is read as a number
         return None
     return _check_of_type(float)(value)
 
 
-def _wrong_actions(value: Value) -> _Fault | None:
+def _wrong_actions(value: Value) -> _Wrong:
     if items_in(value) is None:
         return _Fault("takes a list of actions: put [ ] around them")
     return None
 
 
-def _wrong_remappings(value: Value) -> _Fault | None:
+def _wrong_remappings(value: Value) -> _Wrong:
     rules = items_in(value)
     if rules is None:
         return _NO_LIST
@@ -517,12 +528,12 @@ def _wrong_remappings(value: Value) -> _Fault | None:
         if not isinstance(rule, tuple) or len(rule) != 2:
             return _Fault("takes pairs: ('from', 'to')")
         fault = _wrong_text(rule[0]) or _wrong_text(rule[1])
-        if fault is not None:
+        if fault:
             return fault
     return None
 
 
-_CHECKS: Mapping[str, Callable[[Value], _Fault | None]] = {
+_CHECKS = {
     "text": _wrong_text,
     "texts": _wrong_texts,
     "path": _wrong_path,
@@ -538,7 +549,8 @@ _CHECKS: Mapping[str, Callable[[Value], _Fault | None]] = {
 
 
 def _wrong_declaration(call: Call) -> str:
-    choices, default = call.kwargs.get("choices"), call.kwargs.get("default_value")
+    choices = call.kwargs.get("choices")
+    default = call.kwargs.get("default_value")
     if choices is not None and not items_in(choices):
         return "choices is empty, or no list"
     if isinstance(default, str) and choices is not None and default not in known(choices):
@@ -547,10 +559,11 @@ def _wrong_declaration(call: Call) -> str:
 
 
 def _wrong_include(call: Call) -> str:
-    source, given = call.kwargs["launch_description_source"], call.kwargs.get("launch_arguments")
+    source = call.kwargs["launch_description_source"]
+    given = call.kwargs.get("launch_arguments")
     if not (isinstance(source, Call) and is_a(source.name, SOURCE)):
         fault = _wrong_text(source)
-        if fault is not None:
+        if fault:
             return f"the first argument {fault.message}, not {describe_kind(source)}"
     if isinstance(given, dict) and not all(isinstance(key, str) and len(key) == 2 for key in given):
         # Python takes a key of two letters for a pair
@@ -561,7 +574,8 @@ def _wrong_include(call: Call) -> str:
 
 
 def _wrong_opaque_function(call: Call) -> str:
-    function, args = call.kwargs["function"], call.kwargs.get("args")
+    function = call.kwargs["function"]
+    args = call.kwargs.get("args")
     is_partial = isinstance(function, Call) and function.name == PARTIAL
     if not (isinstance(function, Function) or is_partial) or not isinstance(
         args, list | tuple | None
@@ -573,16 +587,14 @@ def _wrong_opaque_function(call: Call) -> str:
 def _wrong_event_handler(call: Call) -> str:
     value = call.kwargs.get("on_exit", call.kwargs.get("on_start"))
     target = call.kwargs.get("target_action")
-    items = value if isinstance(value, list) else [value]
+    items = as_list(value)
     if not isinstance(value, Function) and not all(
         isinstance(handler, Call) and _is_entity(handler) for handler in items
     ):
         raise Undetermined("what this event handler executes")
     if isinstance(target, str | list | dict | int | float):
         return f"target_action is {describe_kind(target)}, not an action such as Node(...)"
-    if not isinstance(target, Call | None) or (
-        target is not None and not is_a(target.name, PROCESS)
-    ):
+    if not isinstance(target, Call | None) or (target and not is_a(target.name, PROCESS)):
         raise Undetermined("the target of this event handler")
     return ""
 
@@ -631,11 +643,11 @@ def _wrong_boolean(call: Call) -> str:
     default = call.kwargs.get("default_value")
     if isinstance(default, bool):
         call.kwargs["default_value"] = str(default)
-    call.kwargs["choices"] = [*_BOOLEAN_CHOICES]
+    call.kwargs["choices"] = list(_BOOLEAN_CHOICES)
     return _wrong_declaration(call)
 
 
-_SPECIAL: Mapping[str, Callable[[Call], str]] = {
+_SPECIAL = {
     "DeclareLaunchArgument": _wrong_declaration,
     "DeclareBooleanLaunchArgument": _wrong_boolean,
     "OpaqueFunction": _wrong_opaque_function,

@@ -6,6 +6,7 @@ Components are classes that a launch file loads into a container.
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
+from grader.base.grouping import group_values
 from grader.base.source import Location
 from grader.ros.launch.call_arguments import items_in
 from grader.ros.launch.launch_classes import COMPONENT, LIFECYCLE_COMPONENT
@@ -15,6 +16,7 @@ from grader.ros.launch.launch_model import (
     Findings,
     LoadedComponent,
     StartedNode,
+    When,
 )
 from grader.ros.launch.node_parameters import (
     TO_ALL,
@@ -40,17 +42,19 @@ from grader.ros.python.values import Call, EvaluationSignal, Value
 _DESCRIPTIONS = "composable_node_descriptions"
 # The options of ros2 component load and standalone, and whose they have a word each:
 # ros2component/ros2component/api/__init__.py of jazzy.
-_NAME, _BELOW = ("-n", "--node-name"), ("--node-namespace",)
-_REMAP, _PARAMETER = ("-r", "--remap-rule"), ("-p", "--parameter")
+_NAME = ("-n", "--node-name")
+_BELOW = ("--node-namespace",)
+_REMAP = ("-r", "--remap-rule")
+_PARAMETER = ("-p", "--parameter")
 _OF_NODE = (*_NAME, *_BELOW, *_REMAP, *_PARAMETER)
 _OF_NO_NODE = ("--log-level", "-e", "--extra-argument", "-c", "--container-node-name")
 
 
-def start_container(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
+def start_container(findings: Findings, call: Call, context: Context, when: When) -> None:
     """Add a container, and the components that are loaded into it."""
     try:
-        namespace = namespace_below(call.kwargs["namespace"] or "", context, call.at)
-        name = known_text(call.kwargs["name"], context, call.at)
+        namespace = namespace_below(call.kwargs["namespace"] or "", context)
+        name = known_text(call.kwargs["name"], context)
     except EvaluationSignal:
         full = None
     else:
@@ -59,20 +63,20 @@ def start_container(findings: Findings, call: Call, context: Context, when: bool
     _add_components(findings, call, context, when, "")
 
 
-def load_components(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
+def load_components(findings: Findings, call: Call, context: Context, when: When) -> None:
     """Add the components that are loaded into a container that is started elsewhere."""
     target = call.kwargs["target_container"]
     container: str | None = ""
     if not (isinstance(target, Call) and target.short == "ComposableNodeContainer"):
         try:
             # The node of launch itself asks for the service: no namespace is put before it.
-            container = _absolute(known_text(target, context, call.at))
+            container = _absolute(known_text(target, context))
         except EvaluationSignal:
             container = None
     _add_components(findings, call, context, when, container)
 
 
-def load_by_command(findings: Findings, call: Call, words: list[str], when: bool | None) -> bool:
+def load_by_command(findings: Findings, call: Call, words: list[str], when: When) -> bool:
     """Add the component that `ros2 component load` or `standalone` loads, if a command is one.
 
     The latter starts a container, whose name has a number. What a launch file gives to all of its
@@ -114,14 +118,12 @@ def _with_options(node: StartedNode, options: list[str]) -> StartedNode | None:
 
 def _words_by_option(options: list[str]) -> dict[str, list[str]] | None:
     """Return what is behind each option; None if they are not known."""
-    names, words = options[::2], options[1::2]
+    names = options[::2]
+    words = options[1::2]
     is_known = len(names) == len(words) and {*names} <= {*_OF_NODE, *_OF_NO_NODE}
     if not is_known or any(PART_UNKNOWN in word for word in words):
         return None
-    given: dict[str, list[str]] = {}
-    for name, word in zip(names, words, strict=True):
-        given.setdefault(name, []).append(word)
-    return given
+    return group_values(zip(names, words, strict=True))
 
 
 def _list_option_words(given: Mapping[str, Sequence[str]], options: Sequence[str]) -> list[str]:
@@ -138,7 +140,7 @@ def _absolute(name: str) -> str:
 
 
 def _add_components(
-    findings: Findings, call: Call, context: Context, when: bool | None, container: str | None
+    findings: Findings, call: Call, context: Context, when: When, container: str | None
 ) -> None:
     loaded_at = findings.locate(call.at)
     unknown = LoadedComponent(None, None, when, loaded_at, loaded_at, container)
@@ -152,11 +154,11 @@ def _add_components(
             findings.components.append(unknown)
             continue
         is_loaded = _is_loaded(item, context, when)
-        package = _text_if_known(item.kwargs["package"], context, item)
-        plugin = _text_if_known(item.kwargs["plugin"], context, item)
+        package = _text_if_known(item.kwargs["package"], context)
+        plugin = _text_if_known(item.kwargs["plugin"], context)
         at = findings.locate(item.at)
         node = _as_node(item, package, plugin, is_loaded, context, at)
-        if node is not None and node.is_state_publisher:
+        if node and node.is_state_publisher:
             node = node._replace(frame_prefix=read_frame_prefix(item, context))
             if is_loaded is not False:
                 # The process of its container may have a file of parameters for it.
@@ -179,7 +181,7 @@ def _as_node(
     item: Call,
     package: str | None,
     plugin: str | None,
-    when: bool | None,
+    when: When,
     context: Context,
     at: Location,
 ) -> StartedNode | None:
@@ -199,13 +201,13 @@ def _as_node(
         at,
         namespace=None,  # until they are known
         remaps=None,
-        node_name=_text_if_known(item.kwargs.get("name") or "", context, item),
+        node_name=_text_if_known(item.kwargs.get("name") or "", context),
         parameters=(*context.to_all.get(TO_ALL, ()), *given),
         included_by=context.included_by,
         is_component=True,
     )
     with suppress(EvaluationSignal):
-        namespace = namespace_below(item.kwargs.get("namespace") or "", context, item.at)
+        namespace = namespace_below(item.kwargs.get("namespace") or "", context)
         node = node._replace(namespace=namespace)
     with suppress(EvaluationSignal):
         remaps = (*context.to_all.get(REMAPS, ()), *evaluate_remaps(item, context))
@@ -215,7 +217,7 @@ def _as_node(
     return node
 
 
-def _is_loaded(item: Call, context: Context, when: bool | None) -> bool | None:
+def _is_loaded(item: Call, context: Context, when: When) -> When:
     """Return whether a component is loaded by an action that is executed, or not, or perhaps."""
     condition = item.kwargs.get("condition")
     if condition is None or when is False:
@@ -229,8 +231,8 @@ def _is_loaded(item: Call, context: Context, when: bool | None) -> bool | None:
     return when if holds else False
 
 
-def _text_if_known(value: Value, context: Context, item: Call) -> str | None:
+def _text_if_known(value: Value, context: Context) -> str | None:
     try:
-        return known_text(value, context, item.at)
+        return known_text(value, context)
     except EvaluationSignal:
         return None

@@ -7,12 +7,14 @@ Their values are texts with substitutions, by launch's grammar, and texts that a
 
 import re
 import shlex
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple, NoReturn
 
+from grader.base.grouping import Strings, are_texts
 from grader.base.names import closest, did_you_mean
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source
 from grader.ros.config.yaml_nodes import (
     YamlFault,
@@ -31,7 +33,7 @@ from grader.ros.launch.launch_classes import (
     front_end,
 )
 from grader.ros.launch.launch_model import Findings, LaunchFault
-from grader.ros.launch.substitutions import boolean
+from grader.ros.launch.substitutions import boolean, located
 from grader.ros.python.parse import START, Position
 from grader.ros.python.values import (
     Call,
@@ -43,8 +45,8 @@ from grader.ros.python.values import (
 )
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile
 
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
-_SUBSTITUTION = re.compile(r"\$\(([A-Za-z][A-Za-z0-9_-]*)")
+_NAME = on_use(r"[A-Za-z][A-Za-z0-9_-]*")
+_SUBSTITUTION = on_use(r"\$\(([A-Za-z][A-Za-z0-9_-]*)")
 _BEFORE_NEXT = {
     "": " '\"()",
     "'": " '()",
@@ -56,8 +58,8 @@ _Values = list[Value]
 class _SubstitutionFormat(NamedTuple):
     """The names of the arguments of a substitution, in their order."""
 
-    required: tuple[str, ...] = ()
-    optional: tuple[str, ...] = ()
+    required: Strings = ()
+    optional: Strings = ()
     rest: str = ""  # of which there is at least one
 
 
@@ -101,9 +103,13 @@ class _Part(NamedTuple):
 
 
 _Parts = Mapping[str, _Part]
-_TEXT, _REQUIRED, _NOT_EVALUATED = _Part(), _Part(is_required=True), _Part(is_evaluated=False)
-_BOOL, _ANY = _Part(bool), _Part(None)
-_ELEMENTS, _CHILDREN = _Part(holds="elements"), _Part(holds="actions")
+_TEXT = _Part()
+_REQUIRED = _Part(is_required=True)
+_NOT_EVALUATED = _Part(is_evaluated=False)
+_BOOL = _Part(bool)
+_ANY = _Part(None)
+_ELEMENTS = _Part(holds="elements")
+_CHILDREN = _Part(holds="actions")
 _CONDITION_PARTS: _Parts = {"if": _TEXT, "unless": _TEXT}
 _PROCESS: _Parts = {
     "cwd": _TEXT,
@@ -197,6 +203,23 @@ _NESTED: Mapping[str, _Parts] = {
         "param": _ELEMENTS,
     },
 }
+
+
+def elements_in(tag: str) -> list[str]:
+    """Return the elements that an element of a launch file in XML may have."""
+    if tag in ("launch", "group", "timer"):
+        return list(_ACTIONS)
+    parts = {**_ACTIONS, **_NESTED}.get(tag, {})
+    return [name for name, part in parts.items() if part.holds == "elements"]
+
+
+def attributes_of_element(tag: str) -> Iterator[tuple[str, bool]]:
+    """Yield the attributes of an element of a launch file in XML, and whether it needs each."""
+    for name, part in {**_NESTED.get(tag, {}), **_ACTIONS.get(tag, {})}.items():
+        if part.holds == "value":
+            yield name, part.is_required
+
+
 _SCALARS: Mapping[str, type] = {"bool": bool, "float": float, "int": int}
 _VALUE_TYPES = (
     "str",
@@ -280,7 +303,7 @@ def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | La
     except EvaluationFails as error:
         line, column = error.at or START
         return LaunchFault(str(error), Location(source.path, line, column))
-    if root is not None and root.kind == "launch":
+    if root and root.kind == "launch":
         if not is_yaml and _is_of_ros1(root):
             root.error = _ROS1
         return root
@@ -311,7 +334,7 @@ def _xml_root(file: XmlFile) -> _Entity:
         location = file.location(element)
         attributes = {str(name): str(value) for name, value in element.attrib.items()}
         parsed = _Entity(str(element.tag), Position(location.line, location.column), attributes)
-        placed = [*attributes][:_MAX_PLACES]
+        placed = list(attributes)[:_MAX_PLACES]
         parsed.places = {name: _position_at(file.location(element, name)) for name in placed}
         parsed.actions = [
             entity(child, depth + 1) for child in element.iterchildren("*") if depth < _MAX_DEPTH
@@ -337,13 +360,13 @@ class _YamlReader:
         check_one_document(data.decode(), path)
         root = read_yaml(data, path)
         node = root.get("launch")
-        if node is None or not isinstance(root.value, dict) or len(root.value) > 1:
+        if not node or not isinstance(root.value, dict) or len(root.value) > 1:
             return None
         return self.entity("launch", node, 0)
 
     def entries(self, listed: YamlNode, depth: int) -> list[_Entity]:
         """Return the actions of a list, each below its own key. Raises EvaluationFails."""
-        entities: list[_Entity] = []
+        entities = []
         for item in listed.items:
             table = item.value if isinstance(item.value, dict) else {}
             if len(table) != 1:
@@ -431,7 +454,7 @@ def _read_action(entity: _Entity, findings: Findings) -> Call:
         _ARGUMENTS.get(name, name): _read_argument(entity, name, value)
         for name, value in given.items()
     }
-    if condition is not None:
+    if condition:
         kwargs["condition"] = condition
     _add_elements(entity, kwargs)
     if "children" in _ACTIONS[kind]:
@@ -513,8 +536,8 @@ def _typed_attribute(entity: _Entity, name: str, value: Any, wanted: type | None
 def _checked_call(call: Call) -> Call:
     """Return a call whose arguments its constructor accepts. Raises EvaluationSignal."""
     cls = class_named(call.name)
-    doubt = check(cls, call) if cls is not None else None
-    if doubt is not None:
+    doubt = check(cls, call) if cls else None
+    if doubt:
         raise doubt.as_signal(doubt.at)
     return call
 
@@ -582,10 +605,10 @@ def _read_component(entity: _Entity) -> Call:
     """Return a component. Raises EvaluationSignal."""
     given = _read_attributes(entity, _NESTED[entity.kind])
     condition = _take_condition(given, entity)
-    kwargs: dict[str, Value] = {}
+    kwargs = {}
     for name, value in given.items():
         kwargs[_ARGUMENTS.get(name, name)] = _read_argument(entity, name, value)
-    if condition is not None:
+    if condition:
         kwargs["condition"] = condition
     cls = COMPONENT if entity.kind == "composable_node" else LIFECYCLE_COMPONENT
     component = _checked_call(Call(cls, [], kwargs, entity.place("plugin")))
@@ -593,7 +616,7 @@ def _read_component(entity: _Entity) -> Call:
         unknown = Unknown("parameters of components are not evaluated", entity.at)
         component.kwargs["parameters"] = unknown  # the check would leave out the whole component
         with suppress(EvaluationSignal):
-            component.kwargs["parameters"] = [*map(_read_parameter, entity.nested["param"])]
+            component.kwargs["parameters"] = list(map(_read_parameter, entity.nested["param"]))
     if "remap" in entity.nested:
         component.kwargs["remappings"] = Unknown("a remapping is not evaluated", entity.at)
         with suppress(EvaluationSignal):
@@ -651,20 +674,18 @@ def _read_parameter_value(entity: _Entity, given: Mapping[str, Any]) -> Value:
     has_separator = "value-sep" in given
     scalar = _SCALARS.get(kind or "")
     if scalar is not None and not entity.is_yaml and not has_separator:
-        converted = _converted(str(entity.attributes["value"]), scalar, entity)
-        return _checked_call(Call(TYPED[0], [], converted, entity.at))
-    if kind not in (None, "str", "yaml"):
+        kwargs = _converted(str(entity.attributes["value"]), scalar, entity)
+    elif kind not in (None, "str", "yaml"):
         raise Undetermined(f"a <param> of the type {kind} is not evaluated", entity.at)
-    kwargs: dict[str, Value] = {}
-    if has_separator:
-        kwargs["value"] = _separated_values(entity, kind)
-        return _checked_call(Call(TYPED[0], [], kwargs, entity.at))
-    value = given["value"]
-    if kind == "str" and not entity.is_yaml:
-        value = entity.attributes["value"]  # as it is written, where the other is a number
-    kwargs["value"] = _parse_if_text(value, entity.place("value"))
-    if kind == "str":
-        kwargs["value_type"] = Call("builtins.str", [], {}, entity.at)
+    elif has_separator:
+        kwargs = {"value": _separated_values(entity, kind)}
+    else:
+        value = given["value"]
+        if kind == "str" and not entity.is_yaml:
+            value = entity.attributes["value"]  # as it is written, where the other is a number
+        kwargs = {"value": _parse_if_text(value, entity.place("value"))}
+        if kind == "str":
+            kwargs["value_type"] = Call("builtins.str", [], {}, entity.at)
     return _checked_call(Call(TYPED[0], [], kwargs, entity.at))
 
 
@@ -677,7 +698,8 @@ def _converted(text: str, kind: type, entity: _Entity) -> dict[str, Value]:
         of_kind = Call(f"builtins.{kind.__name__}", [], {}, entity.at)
         return {"value": _parse_if_text(text, entity.place("value")), "value_type": of_kind}
     try:
-        return {"value": boolean(text, entity.at) if kind is bool else kind(text)}
+        with located(entity.at):
+            return {"value": boolean(text) if kind is bool else kind(text)}
     except ValueError:
         message = f"the value {text[:40]!r} of a <param> is not {kind.__name__}"
         raise EvaluationFails(message, entity.place("value")) from None
@@ -688,10 +710,11 @@ def _separated_values(entity: _Entity, kind: str | None) -> _Values:
 
     It is split as by launch_xml's entity.py.
     """
-    text, separator = str(entity.attributes["value"]), str(entity.attributes["value-sep"])
+    text = str(entity.attributes["value"])
+    separator = str(entity.attributes["value-sep"])
     if not separator:
         raise EvaluationFails("value-sep is empty", entity.at)
-    items: _Values = [_typed_text(part, None, entity.at) for part in text.split(separator)]
+    items = [_typed_text(part, None, entity.at) for part in text.split(separator)]
     if kind is not None or "$(" in text or len({type(item) for item in items}) > 1:
         raise Undetermined("this list in a <param> is not evaluated", entity.at)
     return [_parse_value(item, entity.at)[0] if isinstance(item, str) else item for item in items]
@@ -788,7 +811,7 @@ class _ValueParser:
 
     def template(self, quote: str, depth: int) -> _Values:
         """Return strings and substitutions, up to the closing quote or the end."""
-        parts: _Values = []
+        parts = []
         while self.position < len(self.text) and (not quote or self.next != quote):
             parts.append(self.part(quote, quote, depth))
         if quote and self.position >= len(self.text):
@@ -816,11 +839,12 @@ class _ValueParser:
     def substitution(self, quote: str, depth: int) -> Call:
         """Return the substitution in brackets: a name, and values separated by one space each."""
         name = _NAME.match(self.text, self.position)
-        if name is None or depth > _MAX_DEPTH:
+        if not name or depth > _MAX_DEPTH:
             raise EvaluationFails(
                 f"there is no name of a substitution after $( in {self.text[:60]!r}", self.at
             )
-        self.position, values = name.end(), list[_Values]()
+        self.position = name.end()
+        values = []
         while self.next == " ":
             self.position += 1
             values.append(self.value(quote, depth))
@@ -838,7 +862,7 @@ class _ValueParser:
             start = self.next
             self.position += 1
             return self.template(start, depth)
-        parts: _Values = []
+        parts = []
         while self.next and self.next not in _BEFORE_NEXT[quote]:
             parts.append(self.part(_BEFORE_NEXT[quote], quote, depth))
         if not parts:
@@ -859,13 +883,13 @@ class _ValueParser:
         required, optional, rest = _SUBSTITUTIONS[name]
         if rest:
             return self.call_with_rest(name, values)
-        names = [*required, *optional]
+        names = required + optional
         if not len(required) <= len(values) <= len(names):
             count = "1 argument" if len(names) == 1 else f"{len(names) or 'no'} arguments"
             raise EvaluationFails(f"$({name} ...) takes {count}", self.at)
-        kwargs: dict[str, Value] = {}
+        kwargs = {}
         for argument, value in zip(names, values, strict=False):
-            is_text = all(isinstance(part, str) for part in value)
+            is_text = are_texts(value)
             kwargs[argument] = "".join(map(str, value)) if is_text else value
         return Call(front_end("substitution")[name], [], kwargs, self.at)
 
@@ -883,7 +907,7 @@ class _ValueParser:
         if len(values) <= len(required):
             count = "2 arguments" if required else "1 argument"
             raise EvaluationFails(f"$({name} ...) takes at least {count}", self.at)
-        kwargs: dict[str, Value] = dict(zip(required, values, strict=False))
+        kwargs = dict(zip(required, values, strict=False))
         kwargs[rest] = values[len(required) :]
         return Call(front_end("substitution")[name], [], kwargs, self.at)
 

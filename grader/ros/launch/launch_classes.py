@@ -9,6 +9,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from grader.base.grouping import StringsByName
+from grader.base.records import Named
+from grader.base.text import last_part
+
 ENTITY = "launch.launch_description_entity.LaunchDescriptionEntity"
 PROCESS = "launch.actions.execute_local.ExecuteLocal"
 CONDITION = "launch.condition.Condition"
@@ -30,7 +34,7 @@ class _ConstructorParameter(NamedTuple):
     can_be_none: bool = False  # although it has a check
 
 
-class LaunchClass(NamedTuple):
+class LaunchClass(Named):
     """A class of launch: its constructor's parameters, and the names of its methods.
 
     The parameters include those that it passes on.
@@ -45,7 +49,7 @@ class LaunchClass(NamedTuple):
     @property
     def short(self) -> str:
         """The name without its module."""
-        return self.name.rpartition(".")[2]
+        return last_part(self.name)
 
 
 @cache
@@ -70,7 +74,7 @@ def class_named(name: str) -> LaunchClass | None:
             )
     inherited = class_named(row["base"])
     methods = frozenset(row["methods"])
-    if inherited is not None:
+    if inherited:
         methods |= inherited.methods
     return LaunchClass(name, row["base"], parameters, methods, row.get("since", ""))
 
@@ -79,14 +83,14 @@ def is_a(name: str, base: str) -> bool:
     """Return whether a class is another, or derived from it."""
     while name != base:
         cls = class_named(name)
-        if cls is None:
+        if not cls:
             return False
         name = cls.base
     return True
 
 
 @cache
-def exports() -> Mapping[str, Mapping[str, str]]:
+def exports() -> Mapping[str, StringsByName]:
     """Return for each module the names that it exports.
 
     Each has the full name of the class, if it is one.
@@ -97,12 +101,12 @@ def exports() -> Mapping[str, Mapping[str, str]]:
     }
 
 
-def front_end(kind: str) -> Mapping[str, str]:
+def front_end(kind: str) -> StringsByName:
     """Return the classes by the names that XML and YAML have for them.
 
     `kind` is action or substitution.
     """
-    names: Mapping[str, str] = _table()[kind]
+    names: StringsByName = _table()[kind]
     return names
 
 
@@ -113,5 +117,5 @@ def first_release(kind: str, name: str) -> str:
         kind: Whether it is an action, an element, an attribute or a substitution.
         name: The word; of an attribute, after that of its element.
     """
-    names: Mapping[str, str] = _table()["since"][kind]
+    names: StringsByName = _table()["since"][kind]
     return names.get(name, "")

@@ -7,19 +7,22 @@ calls return.
 import posixpath
 import re
 import shlex
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import PurePosixPath
 from typing import Any
 
+from grader.base.grouping import StringsByName, distinct
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.names import closest
+from grader.base.records import Record
 from grader.base.reuse import Answers, Memory
 from grader.base.source import Location, Source
+from grader.base.text import last_part
 from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.installation.places import HOME, PREFIX, SHARE, WORKING_FOLDER
-from grader.ros.known.releases import Release
+from grader.ros.known.releases import Releases
 from grader.ros.launch.actions import ActionVisitor, Include, NotIncluded
 from grader.ros.launch.call_arguments import (
     PARTIAL,
@@ -50,9 +53,11 @@ from grader.ros.launch.launch_model import (
     Machine,
     NamedFile,
     StartedNode,
+    StuckNode,
     UnknownText,
     texts_by_name,
 )
+from grader.ros.launch.lifecycle_events import find_stuck
 from grader.ros.launch.machine_recorder import MachineRecorder
 from grader.ros.launch.substitutions import (
     PART_UNKNOWN,
@@ -88,7 +93,8 @@ _TEXTS = [
     for name in ("xacro.process_file", "xacro.parse")
     for method in ("toxml", "toprettyxml")
 ]
-_ELEMENT_TREE, _MINIDOM = "xml.etree.ElementTree", "xml.dom.minidom"
+_ELEMENT_TREE = "xml.etree.ElementTree"
+_MINIDOM = "xml.dom.minidom"
 _PARSERS = (f"{_ELEMENT_TREE}.parse", f"{_MINIDOM}.parse")
 # A file that is opened to be written, and the modes of open for it.
 _WRITTEN = "io.TextIOWrapper"
@@ -113,11 +119,11 @@ _MAX_INCLUDES = 40
 # What a launch file shares with those that it includes.
 _JOINED = (
     *("nodes", "references", "faults", "unknown", "doubts", "declared", "values", "passed"),
-    *("components", "containers", "later"),
+    *("components", "containers", "later", "stuck"),
 )
 
 
-_NO_ARGUMENTS: Mapping[str, str] = {}
+_NO_ARGUMENTS: StringsByName = {}
 
 
 def read_launch(
@@ -125,10 +131,10 @@ def read_launch(
     path: str,
     installed: str,
     machine: Machine,
-    arguments: Mapping[str, str] = _NO_ARGUMENTS,
+    arguments: StringsByName = _NO_ARGUMENTS,
     memory: Memory | None = None,
     work: Budget | None = None,
-    releases: tuple[Release, ...] = (),
+    releases: Releases = (),
 ) -> Launch:
     """Read a launch file and evaluate it. It never raises.
 
@@ -159,8 +165,7 @@ def read_launch(
     return (memory or Memory()).recall(key, machine, work, read)
 
 
-@dataclass(slots=True)
-class _LaunchReader:
+class _LaunchReader(Record, frozen=False):
     """A reader of a launch file and a limited number of included ones."""
 
     includes_left: int = _MAX_INCLUDES
@@ -201,10 +206,10 @@ class _LaunchReader:
             return NotIncluded(f"it includes more than {_MAX_INCLUDES} launch files")
         self.includes_left -= 1
         launch = self.read(*opened, target, context)
-        faults = launch.faults if launch.syntax is None else (*launch.faults, launch.syntax)
+        faults = launch.faults if not launch.syntax else (*launch.faults, launch.syntax)
         if context.when is not True:  # an error in the file counts only if it is included
             launch = launch._replace(
-                doubts=(*launch.doubts, *faults), unknown=(*launch.unknown, *faults), later=()
+                doubts=launch.doubts + faults, unknown=launch.unknown + faults, later=()
             )
             faults = ()
         included.append(launch._replace(faults=faults))
@@ -216,13 +221,13 @@ def _read_entities(
 ) -> Launch:
     from grader.ros.launch.frontend import find_later_words, read_actions, read_frontend
 
-    source = Source(path, data.decode("utf-8", "replace"))
+    source = Source.decoded(path, data)
     findings = Findings(lambda position: Location(path, position.line, position.column))
     resolved = resolve_conflicts(data)
-    if resolved is not None:
+    if resolved:
         findings.add_fault(resolved.message, Position(resolved.line, 1))
         data = resolved.data
-        source = Source(path, data.decode("utf-8", "replace"))
+        source = Source.decoded(path, data)
     root = read_frontend(data, source, is_yaml=is_yaml)
     if isinstance(root, LaunchFault):
         return Launch(source, root)
@@ -280,7 +285,7 @@ def _call_entry(
 
 def _add_missing_entry(file: "_PythonLaunchFile", findings: Findings, *, is_bound: bool) -> None:
     """Add that a file does not define the function that ros2 launch calls."""
-    if file.interpreter.doubt is not None or file.interpreter.errors:
+    if file.interpreter.doubt or file.interpreter.errors:
         return
     if is_bound:
         message = f"{_ENTRY}, which the file does not define itself, is not evaluated"
@@ -303,7 +308,7 @@ def _add_missing_entry(file: "_PythonLaunchFile", findings: Findings, *, is_boun
 def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
     """Add what Python raises, what is not evaluated, and what the file reads."""
     interpreter = file.interpreter
-    if interpreter.doubt is not None:
+    if interpreter.doubt:
         doubt = interpreter.doubt
         findings.add_unknown(doubt.reason, doubt.at, follows_error=doubt.follows_error)
         findings.add_doubt(doubt.reason, doubt.at)
@@ -312,19 +317,21 @@ def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
     if (
         interpreter.errors
     ):  # the description is not loaded, so what is wrong with the rest of it does not count
-        findings.faults, findings.doubts = [], []
+        findings.faults = []
+        findings.doubts = []
     for fault in interpreter.errors:
         findings.add_fault(fault.message, fault.at, fault.lacks, fault.argument)
     for contents, at in file.reads:
         findings.refer("read", contents, Call("", [], {}, at))
     for call in interpreter.calls:
         cls = class_named(call.name)
-        if cls is None:
+        if not cls:
             continue
         if cls.since:
             findings.add_later(f"there is no class {cls.short!r} of launch", cls.since, call.at)
         for name in texts_from_paths(cls, call):
-            what, at = f"{name} of {cls.short} takes no path", call.places.get(name, call.at)
+            what = f"{name} of {cls.short} takes no path"
+            at = call.places.get(name, call.at)
             findings.add_later(what, _PATHS_SINCE, at, ": write str(...) around it")
 
 
@@ -362,19 +369,27 @@ def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNod
     return Launch(
         source=source,
         nodes=tuple(findings.nodes),
-        references=tuple(dict.fromkeys(_list_references(findings))),
+        references=distinct(_list_references(findings)),
         faults=tuple(sorted(set(findings.faults), key=ORDER)),
-        unknown=tuple(dict.fromkeys(findings.unknown)),
-        doubts=tuple(dict.fromkeys(findings.doubts)),
-        declared=tuple(dict.fromkeys(findings.declared)),
+        unknown=distinct(findings.unknown),
+        doubts=distinct(findings.doubts),
+        declared=distinct(findings.declared),
         values=tuple(findings.values),
-        passed=tuple(dict.fromkeys(findings.passed)),
-        commands=tuple(dict.fromkeys(findings.commands)),
+        passed=distinct(findings.passed),
+        commands=distinct(findings.commands),
         components=_distinct_components(findings),
-        containers=tuple(dict.fromkeys(findings.containers)),
+        containers=distinct(findings.containers),
         forgotten=forgotten,
-        later=tuple(dict.fromkeys(findings.later)),
+        later=distinct(findings.later),
+        stuck=tuple(_list_stuck(findings)),
     )
+
+
+def _list_stuck(findings: Findings) -> Iterator[StuckNode]:
+    """Yield the nodes that the events of a launch file certainly do not activate."""
+    for event, state in find_stuck(findings.state_events):
+        waiting = event.handler or event.event
+        yield StuckNode(findings.locate(event.node.at), state, findings.locate(waiting.at))
 
 
 def _list_references(findings: Findings) -> list[NamedFile]:
@@ -388,8 +403,7 @@ def _list_references(findings: Findings) -> list[NamedFile]:
     ]
 
 
-@dataclass(slots=True)
-class _PythonLaunchFile:
+class _PythonLaunchFile(Record, frozen=False):
     """The evaluation of a launch file.
 
     `context` is that of the action which calls one of its functions.
@@ -410,10 +424,10 @@ class _PythonLaunchFile:
         known: dict[str, Collection[str]] = {
             module: exported.keys() for module, exported in exports().items()
         }
-        if _NAVIGATION in code.source.text:
+        if _NAVIGATION in code.text:
             names_of_navigation = (*_OF_NAVIGATION, "LaunchConfigAsBool", "ParseMultiRobotPose")
             known = {"nav2_common": ("launch",), _NAVIGATION: names_of_navigation, **known}
-        if _MOVEIT in code.source.text:
+        if _MOVEIT in code.text:
             from grader.ros.launch.moveit_configs import (  # late: few files use it
                 MoveItConfigurations,
                 moveit_exports,
@@ -446,7 +460,8 @@ class _PythonLaunchFile:
         named: Mapping[str, Value] = _NO_ARGUMENTS,
     ) -> Value:
         """Return the value of a call of a function of the file, in an action's context."""
-        before, self.context = self.context, context
+        before = self.context
+        self.context = context
         try:
             return self.interpreter.call_from_outside(function, at, args, named)
         finally:
@@ -532,7 +547,7 @@ class _PythonLaunchFile:
     def _text(self, evaluation: Evaluation, call: Call) -> Value:
         """Return the text of a file that is expanded, or read for the first time."""
         opened = call.owner
-        if opened is None or call.args:
+        if not opened or call.args:
             raise Undetermined("a part of the text of a file is not evaluated")
         if call.name.endswith(".read"):
             if any(not before.name.endswith("__enter__") for before in opened.method_calls):
@@ -584,10 +599,9 @@ class _PythonLaunchFile:
         return PurePosixPath(self._share(evaluation, call))
 
     def _open(self, evaluation: Evaluation, call: Call) -> Value:
-        file, mode = call.argument(0, "file"), known(call.argument(1, "mode"))
-        path = path_text(
-            file if isinstance(file, Call) and class_named(file.name) is not None else known(file)
-        )
+        file = call.argument(0, "file")
+        mode = known(call.argument(1, "mode"))
+        path = path_text(file if isinstance(file, Call) and class_named(file.name) else known(file))
         if path is None:
             raise EvaluationFails(
                 "open takes a path, not a substitution: use Command(['cat ', ...])"
@@ -596,7 +610,9 @@ class _PythonLaunchFile:
         others = call.kwargs.keys() - {"file", "mode", "encoding"}
         is_utf8 = encoding is None or str(encoding).lower().replace("_", "-") in ("utf-8", "utf8")
         if mode in _WRITES:
-            call.name, call.args, call.kwargs = _WRITTEN, [], {}
+            call.name = _WRITTEN
+            call.args = []
+            call.kwargs = {}
             return record(evaluation, call)
         if mode not in (None, "r", "rt") or not is_utf8 or others or len(call.args) > 2:
             raise Undetermined("this use of open is not evaluated", call.at, is_final=True)
@@ -605,7 +621,9 @@ class _PythonLaunchFile:
                 "whether the file of this try is there is not evaluated", call.at, is_final=True
             )
         self.reads.append((Contents(path, "open"), call.at))
-        call.name, call.args, call.kwargs = "builtins.open", [path], {}
+        call.name = "builtins.open"
+        call.args = [path]
+        call.kwargs = {}
         return record(evaluation, call)
 
     def _open_path(self, evaluation: Evaluation, call: Call) -> Value:
@@ -618,7 +636,8 @@ class _PythonLaunchFile:
 
     def _check_output(self, evaluation: Evaluation, call: Call) -> Value:
         """Return what a command prints that prints a file: as bytes, or as a text."""
-        given, is_text = known(call.argument(0, "args")), False
+        given = known(call.argument(0, "args"))
+        is_text = False
         for name in ("text", "universal_newlines", "encoding"):
             is_text |= bool(known(call.kwargs.get(name)))
         others = call.kwargs.keys() - {"args", "text", "universal_newlines", "encoding", "shell"}
@@ -627,12 +646,13 @@ class _PythonLaunchFile:
                 given = shlex.split(given)
         items = given if isinstance(given, list | tuple) else []
         words = [path_text(known(item)) or PART_UNKNOWN for item in items]
-        check_xacro_words(words, call.at)
+        check_xacro_words(words)
         contents = printed_file(words)
-        if contents is None or others or len(call.args) > 1:
+        if not contents or others or len(call.args) > 1:
             raise Undetermined("this use of subprocess is not evaluated", call.at, is_final=True)
         self.reads.append((contents, call.at))
-        call.args, call.kwargs = [words], {}
+        call.args = [words]
+        call.kwargs = {}
         return _printed_text(call) if is_text else record(evaluation, call)
 
     def _exists(self, _: Evaluation, call: Call) -> Value:
@@ -656,7 +676,7 @@ class _PythonLaunchFile:
         tree = call.argument(0, "element")
         if not isinstance(tree, Call) or tree.name != f"{_ELEMENT_TREE}.parse":
             raise Undetermined("the text of these elements is not evaluated")
-        call.args = [*tree.args]
+        call.args = list(tree.args)
         if call.kwargs.get("encoding") == "unicode":
             return _document_text(call)
         return record(evaluation, call)
@@ -685,16 +705,16 @@ class _PythonLaunchFile:
 
 def _document_text(document: Call | None) -> FileText:
     """Return the text of a document that was parsed from a file."""
-    assert document is not None
+    assert document
     contents = Contents(document.args[0], "open")
     return FileText("the content of a file is not evaluated", document.at, contents)
 
 
 def _printed_text(call: Call | None) -> FileText:
     """Return the text that a recorded command prints."""
-    contents = printed_file(call.args[0]) if call is not None else None
-    assert call is not None
-    assert contents is not None
+    contents = printed_file(call.args[0]) if call else None
+    assert call
+    assert contents
     return FileText(
         reason="the output of a command is not evaluated", at=call.at, contents=contents
     )
@@ -724,13 +744,14 @@ def _add_action(evaluation: Evaluation, call: Call) -> Value:
     """Record an action that is added to a description."""
     if len(call.args) + len(call.kwargs) != 1:
         raise EvaluationFails(f"{call.short} takes one action")
-    call.args = [*map(evaluation.perhaps, [*call.args, *call.kwargs.values()])]
+    call.args = list(map(evaluation.perhaps, [*call.args, *call.kwargs.values()]))
     record(evaluation, call)
 
 
 def _process_doc(evaluation: Evaluation, call: Call) -> Value:
     """Give the document that xacro.parse() returns the arguments with which it is expanded."""
-    document, mappings = call.argument(0, "doc"), call.argument(1, "mappings")
+    document = call.argument(0, "doc")
+    mappings = call.argument(1, "mappings")
     if isinstance(document, Call) and mappings is not None:
         document.kwargs["mappings"] = mappings
     record(evaluation, call)
@@ -738,10 +759,11 @@ def _process_doc(evaluation: Evaluation, call: Call) -> Value:
 
 def _read_variable(evaluation: Evaluation, call: Call) -> Value:
     """Return a variable of the environment: whether it is set is not known."""
-    name, default = known(call.argument(0, "key")), known(call.argument(1, "default"))
+    name = known(call.argument(0, "key"))
+    default = known(call.argument(1, "default"))
     if name == "HOME":
         return HOME
-    unknown: Unknown = UnknownText("the environment is not evaluated", call.at)
+    unknown = UnknownText("the environment is not evaluated", call.at)
     if call.name.endswith("__getitem__"):  # a KeyError, if it is not set
         return unknown if evaluation.guarded else evaluation.doubted(unknown)
     return unknown if isinstance(default, str) else Unknown(unknown.reason, call.at)
@@ -757,13 +779,14 @@ def _set_variable(_: Evaluation, call: Call) -> Value:
 
 def _text_of_navigation(_: Evaluation, call: Call) -> Value:
     """Return the text of a substitution of Nav2, which is not known."""
-    name = call.name.rpartition(".")[2]
+    name = last_part(call.name)
     return UnknownText(f"{name} of nav2_common is not evaluated", call.at)
 
 
 def _configuration(evaluation: Evaluation, call: Call) -> Value:
     """Return the launch configuration that a substitution of Nav2 reads as a truth value."""
-    call.args, call.kwargs = [call.argument(0, "name")], {}
+    call.args = [call.argument(0, "name")]
+    call.kwargs = {}
     return evaluation.call_value(QualifiedName(_CONFIGURATION), call)
 
 

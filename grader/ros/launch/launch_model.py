@@ -10,9 +10,13 @@ from functools import partial
 from operator import attrgetter
 from typing import Any, Literal, NamedTuple, Protocol, cast
 
+from grader.base.grouping import Strings
+from grader.base.records import Named, Record
 from grader.base.source import Location, Source
 from grader.ros.installation.places import PREFIX
-from grader.ros.known.releases import Release, is_before
+from grader.ros.known.releases import Release, Releases, is_before
+from grader.ros.launch.lifecycle_events import StateEvent
+from grader.ros.launch.started_commands import StartedCommand
 from grader.ros.python.budget import Budget
 from grader.ros.python.parse import Position
 from grader.ros.python.values import (
@@ -32,6 +36,11 @@ ORDER = attrgetter("location.line", "location.column", "message")  # of faults
 Purpose = Literal["urdf", "rviz", "include", "read", "parameters"]
 
 
+When = bool | None  # whether an action is executed; None if that is unknown
+# Strings by names; None for one that is not known.
+_Texts = tuple[tuple[str, str | None], ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Contents:
     """The contents of a file, read by open, cat or xacro.
@@ -41,7 +50,7 @@ class Contents:
 
     path: str
     by: str
-    arguments: tuple[tuple[str, str | None], ...] = ()
+    arguments: _Texts = ()
     stops_at_stderr: bool = False  # whether launch stops if the program writes a warning
     is_deprecated: bool = False  # whether xacro has an option of which it warns
 
@@ -69,7 +78,7 @@ class FileText(UnknownText):
 Resolved = str | Contents | Unknown
 
 
-def texts_by_name(table: Mapping[Any, Value]) -> tuple[tuple[str, str | None], ...]:
+def texts_by_name(table: Mapping[Any, Value]) -> _Texts:
     """Return the values in a table by their names; None for one that is no known text."""
     return tuple(
         (str(name), value if isinstance(value, str) else None) for name, value in table.items()
@@ -108,12 +117,11 @@ class Machine(Protocol):
         Returns None where they are not all known.
         """
 
-    def has_program(self, package: str, name: str) -> bool | None:
+    def has_program(self, package: str, name: str) -> When:
         """Return whether a package has a program; None where this is not known."""
 
 
-@dataclass(slots=True)
-class Context:
+class Context(Record, frozen=False):
     """The path of the installed launch file, and what launch knows when it executes an action.
 
     `arguments` are the launch configurations. With `has_others` there may be more of them, which a
@@ -124,13 +132,12 @@ class Context:
     machine: Machine
     arguments: dict[str, Resolved] = field(default_factory=dict)
     has_others: bool = False
-    when: bool | None = True  # whether the file is launched at all
+    when: When = True  # whether the file is launched at all
     # What SetRemap and SetParameter give to all nodes, by the configurations that launch_ros keeps
     # them in: lists, which groups share, as there. None is one that is not known.
     to_all: "dict[str, list[Any]]" = field(default_factory=dict)
-    included_by: tuple[
-        str, ...
-    ] = ()  # the paths of the launch files that include this one, the first one first
+    # The paths of the launch files that include this one, the first one first.
+    included_by: Strings = ()
     # errors in the current action, after which it is evaluated as it is meant
     faults: list[tuple[str, Position]] = field(default_factory=list)
     given: frozenset[str] = frozenset()  # the launch arguments that the file is included with
@@ -140,7 +147,7 @@ class Context:
     budget: Budget = field(
         default_factory=partial(Budget, MAX_STEPS)
     )  # of all files that are launched
-    releases: tuple[Release, ...] = ()  # whose Python reads the files; none: that of Jazzy
+    releases: Releases = ()  # whose Python reads the files; none: that of Jazzy
 
     def copy(self) -> "Context":
         """Return a context whose launch configurations change on their own."""
@@ -162,7 +169,7 @@ class Context:
             return None
 
 
-class ParameterValue(NamedTuple):
+class ParameterValue(Named):
     """The value that a parameter is given, and where it is written.
 
     The value is a scalar or a list of them or Unknown. If its name is in a file, its place is there
@@ -186,7 +193,7 @@ class ParameterValue(NamedTuple):
         return f" (launch_ros writes {self.text!r} without quotes)" if self.text else ""
 
 
-class GivenParameters(NamedTuple):
+class GivenParameters(Named):
     """Parameters that a node is given at once.
 
     They are those of a file, by the path that launch has of it, or `values`.
@@ -214,18 +221,17 @@ class StartedNode(NamedTuple):
 
     package: str
     executable: str
-    when: bool | None
+    when: When
     location: Location
     frame_prefix: str | None = ""
     namespace: str | None = ""
-    remaps: tuple[tuple[str, ...], ...] | None = ()
+    remaps: tuple[Strings, ...] | None = ()
     has_description: bool = False  # whether it is given the robot itself, not only by a topic
     node_name: str | None = ""  # the one that it is given; empty if it keeps that of its program
     arguments: tuple[str | None, ...] | None = None  # the words after the program
     parameters: tuple[GivenParameters, ...] | None = None  # later ones count; see parameters_of
-    included_by: tuple[
-        str, ...
-    ] = ()  # the paths below the prefix of the launch files by which its own is included
+    # The paths below the prefix of the launch files by which its own is included.
+    included_by: Strings = ()
     has_prefix: bool = False  # whether another program starts it, such as a terminal
     is_component: bool = False  # whether a container loads it; its program is the class
 
@@ -257,11 +263,19 @@ class StartedNode(NamedTuple):
         return f"/{(self.namespace or '').strip('/')}/{name}".replace("//", "/")
 
     @property
+    def program(self) -> tuple[str, str]:
+        """The package and the program."""
+        return self.package, self.executable
+
+    @property
+    def program_path(self) -> str:
+        """The package and the program as one text: `demo_nodes_cpp/talker`."""
+        return "/".join(self.program)
+
+    @property
     def name(self) -> str:
         """The package and the program, once where they are called the same."""
-        if self.package == self.executable:
-            return self.executable
-        return f"{self.package}/{self.executable}"
+        return self.executable if self.package == self.executable else self.program_path
 
     @property
     def program_name(self) -> str:
@@ -279,7 +293,7 @@ class StartedNode(NamedTuple):
         return STATE_PUBLISHER in (self.executable, self.program_name)
 
 
-class LoadedComponent(NamedTuple):
+class LoadedComponent(Named):
     """A class that a launch file loads into a container of rclcpp_components.
 
     What is not known of it is None.
@@ -290,7 +304,7 @@ class LoadedComponent(NamedTuple):
 
     package: str | None
     plugin: str | None  # sensors::Lidar
-    when: bool | None  # as that of a node
+    when: When  # as that of a node
     location: Location
     loaded_at: Location  # by which action
     container: str | None = ""
@@ -298,15 +312,15 @@ class LoadedComponent(NamedTuple):
     node: StartedNode | None = None
 
 
-class Container(NamedTuple):
+class Container(Named):
     """A node that a launch file starts to load components, by its full name, if it is known."""
 
     name: str | None
-    when: bool | None
+    when: When
     location: Location
 
 
-class NamedFile(NamedTuple):
+class NamedFile(Named):
     """A file that the launch file names.
 
     `path` begins with a stand-in where a folder depends on the machine.
@@ -318,12 +332,12 @@ class NamedFile(NamedTuple):
     reason: str = ""  # why the path is unknown, or what is wrong with it
     is_certain: bool = True  # False where it is unknown
     by: str = ""  # the program that reads it, if there is one: xacro, cat, open or decode
-    arguments: tuple[tuple[str, str | None], ...] = ()  # that xacro gets
+    arguments: _Texts = ()  # that xacro gets
     stops_at_stderr: bool = False  # whether launch stops if xacro writes a warning
     is_deprecated: bool = False  # whether xacro has an option of which it warns
 
 
-class PassedArguments(NamedTuple):
+class PassedArguments(Named):
     """The launch arguments that an include passes to a launch file, by its path below the prefix.
 
     The value of one is None where it is not known. `when` is None where it is not known whether the
@@ -331,12 +345,12 @@ class PassedArguments(NamedTuple):
     """
 
     path: str
-    values: tuple[tuple[str, str | None], ...]
+    values: _Texts
     location: Location
-    when: bool | None = True
+    when: When = True
 
 
-class LaunchFault(NamedTuple):
+class LaunchFault(Named):
     """An error that stops the launch or a node, or something unknown, with its location."""
 
     message: str
@@ -347,7 +361,7 @@ class LaunchFault(NamedTuple):
     follows_error: bool = False  # unknown because an error before certainly stops Python
 
 
-class _LaterWord(NamedTuple):
+class _LaterWord(Named):
     """A class, an action, a substitution or a use of them that releases before one do not have."""
 
     message: str
@@ -355,7 +369,15 @@ class _LaterWord(NamedTuple):
     location: Location
 
 
-class Launch(NamedTuple):
+class StuckNode(Named):
+    """A node that the events of a launch file leave in a state, though one would activate it."""
+
+    node: Location
+    state: str
+    waiting: Location  # the handler, or the event, that never comes
+
+
+class Launch(Named):
     """The result of a launch file and of those that it includes."""
 
     source: Source
@@ -365,12 +387,10 @@ class Launch(NamedTuple):
     faults: tuple[LaunchFault, ...] = ()
     unknown: tuple[LaunchFault, ...] = ()  # what may start more
     doubts: tuple[LaunchFault, ...] = ()  # what may stop the launch
-    declared: tuple[
-        str, ...
-    ] = ()  # the launch arguments that it and the files that it includes declare
+    declared: Strings = ()  # the launch arguments that it and the files that it includes declare
     values: tuple[tuple[str, str], ...] = ()  # of these, as far as they are known
     passed: tuple[PassedArguments, ...] = ()
-    commands: tuple[str, ...] = ()  # those that are executed besides nodes
+    commands: tuple[StartedCommand, ...] = ()
     components: tuple[LoadedComponent, ...] = ()  # which may start more than is known
     containers: tuple[Container, ...] = ()  # likewise
     forgotten: tuple[
@@ -378,6 +398,7 @@ class Launch(NamedTuple):
     ] = ()  # created in the file, but not part of its LaunchDescription
     unread: str = ""  # why the file was not read at all: too large, damaged
     later: tuple[_LaterWord, ...] = ()  # evaluated as the releases do that have it
+    stuck: tuple[StuckNode, ...] = ()
 
     def in_releases(self, releases: Collection[Release]) -> "Launch":
         """Return the launch file as some releases launch it.
@@ -397,9 +418,19 @@ class Launch(NamedTuple):
         return tuple(reference for reference in self.references if reference.purpose in purposes)
 
     @property
+    def rviz_paths(self) -> list[str]:
+        """The paths of RViz files that it names, as far as they are known."""
+        return [reference.path for reference in self.named("rviz") if reference.path is not None]
+
+    @property
+    def command_texts(self) -> Strings:
+        """The commands that it executes besides nodes, each as one line."""
+        return tuple(command.text for command in self.commands if command.when is not False)
+
+    @property
     def more(self) -> str:
         """Why it may start more than is known; empty where it does not."""
-        is_read = self.syntax is None and not self.unread
+        is_read = not self.syntax and not self.unread
         if self.unknown:
             return self.unknown[0].message
         if is_read:
@@ -416,7 +447,7 @@ class Launch(NamedTuple):
         unknown_at = set()
         nodes = []
         for component in self.components:
-            if component.node is None:
+            if not component.node:
                 unknown_at.add(component.loaded_at)
             else:
                 nodes.append(component.node)
@@ -444,8 +475,7 @@ class Launch(NamedTuple):
         )
 
 
-@dataclass(slots=True)
-class Findings:
+class Findings(Record, frozen=False):
     """The findings so far in one launch file.
 
     `sets_parameters` says whether an action gives parameters to all nodes.
@@ -460,10 +490,12 @@ class Findings:
     declared: list[str] = field(default_factory=list)
     values: list[tuple[str, str]] = field(default_factory=list)
     passed: list[PassedArguments] = field(default_factory=list)
-    commands: list[str] = field(default_factory=list)
+    commands: list[StartedCommand] = field(default_factory=list)
     components: list[LoadedComponent] = field(default_factory=list)
     containers: list[Container] = field(default_factory=list)
     later: list[_LaterWord] = field(default_factory=list)
+    # the events that change states, and None for each that is not known
+    state_events: list[StateEvent | None] = field(default_factory=list)
     sets_parameters: bool = False
     is_silent: bool = False  # while what may never be executed is visited
 
@@ -497,7 +529,7 @@ class Findings:
         self.add_unknown(reason, at)
         self.add_doubt(reason, at)
 
-    def add(self, signal: EvaluationSignal, at: Position, when: bool | None) -> None:
+    def add(self, signal: EvaluationSignal, at: Position, when: When) -> None:
         """Add what ends an action.
 
         An error is added only if it certainly is executed. `at` is the position of the action.

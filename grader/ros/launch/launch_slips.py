@@ -1,10 +1,12 @@
 """The slips in the names of a Python launch file: what it imports, calls and defines."""
 
 import ast
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection
 
+from grader.base.grouping import StringsByName
 from grader.base.names import closest, near
-from grader.base.slips import Slip
+from grader.base.slips import Slip, Slips
+from grader.base.text import last_part
 from grader.ros.known.package_files import packages_with_files
 from grader.ros.known.package_rows import find_programs, lacks_program, package_row
 from grader.ros.known.python_names import python_names
@@ -22,7 +24,7 @@ def launch_slips(code: Code, package: str, programs: Collection[str]) -> list[Sl
 
     The file is of a package with these programs.
     """
-    return [*_LaunchNames(code, package, programs).found()]
+    return list(_LaunchNames(code, package, programs).found())
 
 
 def name_slips(code: Code, package: str) -> list[Slip]:
@@ -30,7 +32,7 @@ def name_slips(code: Code, package: str) -> list[Slip]:
 
     Each is near one that it defines, or that of the package without quotes.
     """
-    return [*_LaunchNames(code, package).undefined()]
+    return list(_LaunchNames(code, package).undefined())
 
 
 class _LaunchNames:
@@ -45,15 +47,12 @@ class _LaunchNames:
         self._classes: dict[str, str] = {}  # the full names of imported classes
         self._renamed: dict[str, str] = {}  # what an import is read as
         for node in self._nodes:
-            self._bind(node)
+            self._bound.update(bound_names(node))
+            if isinstance(node, ast.ImportFrom) and node.module:
+                for alias in node.names:
+                    self._classes[alias.asname or alias.name] = f"{node.module}.{alias.name}"
 
-    def _bind(self, node: ast.AST) -> None:
-        self._bound.update(bound_names(node))
-        if isinstance(node, ast.ImportFrom) and node.module:
-            for alias in node.names:
-                self._classes[alias.asname or alias.name] = f"{node.module}.{alias.name}"
-
-    def found(self) -> Iterator[Slip]:
+    def found(self) -> Slips:
         """Yield the slips in the order of the file, those of imports first."""
         for node in self._nodes:
             if isinstance(node, ast.ImportFrom):
@@ -65,10 +64,10 @@ class _LaunchNames:
         for node in self._nodes:
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 yield from self._of_arguments(node, node.func.id)
-                if self._full_name(node.func.id).rpartition(".")[2] == "Node":
+                if last_part(self._full_name(node.func.id)) == "Node":
                     yield from self._of_program(node)
 
-    def _of_import(self, node: ast.ImportFrom, known: Mapping[str, str]) -> Iterator[Slip]:
+    def _of_import(self, node: ast.ImportFrom, known: StringsByName) -> Slips:
         for alias in node.names:
             if alias.name in known or alias.name == "*":
                 continue
@@ -87,7 +86,7 @@ class _LaunchNames:
                 self._code, alias, alias.name, meant, f"{node.module} has no {alias.name}"
             )
 
-    def _of_function(self) -> Iterator[Slip]:
+    def _of_function(self) -> Slips:
         functions = [node for node in self._code.tree.body if isinstance(node, ast.FunctionDef)]
         if any(node.name == _FUNCTION for node in functions):
             return
@@ -96,7 +95,7 @@ class _LaunchNames:
                 reaction = f"the launch file defines no {_FUNCTION}()"
                 yield read_as(self._code, node, node.name, _FUNCTION, reaction)
 
-    def undefined(self) -> Iterator[Slip]:
+    def undefined(self) -> Slips:
         """Yield the names that are used and not defined."""
         if "*" in self._bound:
             return
@@ -113,9 +112,9 @@ class _LaunchNames:
             if meant is not None:
                 yield read_as(self._code, node, name, meant, f"the name {name} is not defined")
 
-    def _of_arguments(self, call: ast.Call, function: str) -> Iterator[Slip]:
+    def _of_arguments(self, call: ast.Call, function: str) -> Slips:
         known = class_named(self._full_name(function))
-        if known is None:
+        if not known:
             return
         given = {keyword.arg for keyword in call.keywords}
         for keyword in call.keywords:
@@ -128,15 +127,16 @@ class _LaunchNames:
                     self._code, keyword, name, meant, f"{function}() has no argument {name}"
                 )
 
-    def _of_program(self, call: ast.Call) -> Iterator[Slip]:
+    def _of_program(self, call: ast.Call) -> Slips:
         """Yield the package or the program of a node near one that ROS 2 has."""
-        given: dict[str, ast.Constant] = {}
+        given = {}
         for keyword in call.keywords:
             if isinstance(keyword.value, ast.Constant) and isinstance(keyword.value.value, str):
                 given[keyword.arg or ""] = keyword.value
         if not {"package", "executable"} <= given.keys():
             return
-        package, program = str(given["package"].value), str(given["executable"].value)
+        package = str(given["package"].value)
+        program = str(given["executable"].value)
         if package_row(package).is_installed:
             meant = (
                 near(program, find_programs(package)) if lacks_program(package, program) else None
@@ -146,8 +146,10 @@ class _LaunchNames:
                 yield read_as(self._code, given["executable"], program, meant, reaction)
             return
         meant = near(package, (self._package, *packages_with_files()))
+        if meant is None:
+            return
         is_own = meant == self._package and program in self._programs
-        if meant is not None and (is_own or program in find_programs(meant)):
+        if is_own or program in (package_row(meant).programs or ()):
             reaction = f"ROS 2 has no package {package!r}"
             yield read_as(self._code, given["package"], package, meant, reaction)
 

@@ -14,6 +14,7 @@ from functools import partial
 from pathlib import PurePosixPath
 from typing import Any
 
+from grader.base.grouping import StringsByName, known_values
 from grader.files.limits import SETUP_ASSISTANT
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
 from grader.ros.installation.places import BY_MOVEIT, PREFIX, SHARE
@@ -41,6 +42,10 @@ from grader.ros.python.values import (
     path_text,
 )
 
+_Given = Mapping[str, Value]  # arguments by their names
+
+_Table = dict[str, Value]
+
 _PACKAGE = "moveit_configs_utils"
 _BUILDER = f"{_PACKAGE}.moveit_configs_builder.MoveItConfigsBuilder"
 _BUILDER_CLASSES = ("MoveItConfigs", "MoveItConfigsBuilder")
@@ -53,7 +58,8 @@ _IF, _UNLESS = (
     f"launch.conditions.{condition}"
     for condition in ("if_condition.IfCondition", "unless_condition.UnlessCondition")
 )
-_MAX_DEPTH, _MAX_NUMBER = 40, 50
+_MAX_DEPTH = 40
+_MAX_NUMBER = 50
 _DEFAULT_PIPELINES = (
     "chomp",
     "ompl",
@@ -154,7 +160,7 @@ class _Configuration:
     folder: str  # the share folder of its package
     description: str  # the name of the parameter
     doubt: Callable[[Unknown], Unknown]
-    parts: dict[str, dict[str, Value]] = field(default_factory=dict)
+    parts: dict[str, _Table] = field(default_factory=dict)
 
     def doubted(self, reason: str, at: Position) -> UnknownText:
         """Return a text that is not known, with the doubt whether MoveIt finds it at all."""
@@ -210,13 +216,13 @@ class MoveItConfigurations:
         return made
 
     def _step(self, name: str, _: Evaluation, call: Call) -> Call:
-        assert call.owner is not None
+        assert call.owner
         self._made(self._built[call.owner], name, call.at, _named(call, _PARAMETERS[name]))
         return call.owner
 
     def _finish(self, _: Evaluation, call: Call) -> Namespace:
         """Return the configuration, with what is made by default, as an object with its parts."""
-        assert call.owner is not None
+        assert call.owner
         configuration = self._built[call.owner]
         for name in _DEFAULT_PARTS:
             if not configuration.parts.get(name):
@@ -226,7 +232,7 @@ class MoveItConfigurations:
             and "pilz_cartesian_limits" not in configuration.parts
         ):
             self._made(configuration, "pilz_cartesian_limits", call.at, {})
-        parts: dict[str, Value] = {
+        parts: _Table = {
             name: configuration.parts.get(name, {}) for name in (*_PARTS, "pilz_cartesian_limits")
         }
         parts["package_path"] = PurePosixPath(configuration.folder)
@@ -240,9 +246,7 @@ class MoveItConfigurations:
 
         return Namespace("MoveItConfigs", find)
 
-    def _made(
-        self, configuration: _Configuration, name: str, at: Position, given: Mapping[str, Value]
-    ) -> None:
+    def _made(self, configuration: _Configuration, name: str, at: Position, given: _Given) -> None:
         """Make a part of a configuration, as the method of this name does."""
         if name in _YAML_PARTS:
             ending, stem = _YAML_PARTS[name]
@@ -261,7 +265,7 @@ class MoveItConfigurations:
             }
             configuration.parts[name] = make[name](configuration, at, given)
 
-    def _path(self, configuration: _Configuration, given: Mapping[str, Value], default: str) -> str:
+    def _path(self, configuration: _Configuration, given: _Given, default: str) -> str:
         """Return the path of a file that is given, or a default, in the package."""
         value = given.get("file_path")
         text = path_text(known(value)) if value is not None else default
@@ -313,9 +317,7 @@ class MoveItConfigurations:
             return f"{SHARE}/{package}/{file}"
         return None
 
-    def _description(
-        self, configuration: _Configuration, at: Position, given: Mapping[str, Value]
-    ) -> dict[str, Value]:
+    def _description(self, configuration: _Configuration, at: Position, given: _Given) -> _Table:
         """Return the robot; if its file is not there, MoveIt waits for a topic."""
         path = self._path(configuration, given, f"config/{configuration.robot}.urdf.xacro")
         if "file_path" not in given:
@@ -337,9 +339,7 @@ class MoveItConfigurations:
             )
         }
 
-    def _semantic(
-        self, configuration: _Configuration, at: Position, given: Mapping[str, Value]
-    ) -> dict[str, Value]:
+    def _semantic(self, configuration: _Configuration, at: Position, given: _Given) -> _Table:
         path = self._path(configuration, given, f"config/{configuration.robot}.srdf")
         key = f"{configuration.description}_semantic"
         is_open = "file_path" not in given and any(
@@ -350,21 +350,21 @@ class MoveItConfigurations:
         contents = self._read(path, at, "xacro", _mappings(given))
         return {key: FileText("the output of xacro is not evaluated", at, contents)}
 
-    def _pipelines(
-        self, configuration: _Configuration, at: Position, given: Mapping[str, Value]
-    ) -> dict[str, Value]:
-        names, ending = self._names(configuration), "_planning.yaml"
+    def _pipelines(self, configuration: _Configuration, at: Position, given: _Given) -> _Table:
+        names = self._names(configuration)
+        ending = "_planning.yaml"
         wanted, default = (
             known(given.get(argument)) for argument in ("pipelines", "default_planning_pipeline")
         )
         configured = [name.removesuffix(ending) for name in names or () if name.endswith(ending)]
-        pipelines, unordered = wanted, None
+        pipelines = wanted
+        unordered = None
         if wanted is None:
             with_all = given.get("load_all", True)
             if names is None and not with_all:
                 raise Undetermined("the pipelines of MoveIt are not evaluated", at)
             others = _DEFAULT_PIPELINES if with_all else ()
-            pipelines = [*dict.fromkeys([*configured, *others])]
+            pipelines = list(dict.fromkeys([*configured, *others]))
             unordered = UnknownText("the order in which files are found is not known", at)
         if not isinstance(pipelines, list | tuple):
             raise Undetermined("the pipelines of MoveIt are not evaluated", at)
@@ -374,7 +374,7 @@ class MoveItConfigurations:
             for pipeline in map(str, pipelines)
         }
         return {
-            "planning_pipelines": unordered or [*pipelines],
+            "planning_pipelines": unordered or list(pipelines),
             "default_planning_pipeline": default,
             **tables,
         }
@@ -390,14 +390,13 @@ class MoveItConfigurations:
             return table
         return UnknownTable("the default configuration of ompl is not evaluated", at)
 
-    def _controllers(
-        self, configuration: _Configuration, at: Position, given: Mapping[str, Value]
-    ) -> dict[str, Value]:
+    def _controllers(self, configuration: _Configuration, at: Position, given: _Given) -> _Table:
         manages = given.get("moveit_manage_controllers", True)
-        made: dict[str, Value] = {"moveit_manage_controllers": manages}
+        made = {"moveit_manage_controllers": manages}
         if "file_path" in given:
             return made | _spread(self._yaml(self._path(configuration, given, ""), at))
-        ending, names = "_controllers.yaml", self._names(configuration)
+        ending = "_controllers.yaml"
+        names = self._names(configuration)
         for name in ("moveit", "moveit2", configuration.robot):
             path = f"{configuration.folder}/config/{name}{ending}"
             if self._is_there(path):
@@ -415,9 +414,7 @@ class MoveItConfigurations:
             )
         return made | _spread(self._yaml(f"{configuration.folder}/config/{fitting[0]}", at))
 
-    def _sensors(
-        self, configuration: _Configuration, at: Position, given: Mapping[str, Value]
-    ) -> dict[str, Value]:
+    def _sensors(self, configuration: _Configuration, at: Position, given: _Given) -> _Table:
         path = self._path(configuration, given, "config/sensors_3d.yaml")
         if not self._is_there(path):
             if self._names(configuration) is not None:
@@ -429,9 +426,7 @@ class MoveItConfigurations:
             return _spread(table)
         return {}
 
-    def _scene(
-        self, _: _Configuration, __: Position, given: Mapping[str, Value]
-    ) -> dict[str, Value]:
+    def _scene(self, _: _Configuration, __: Position, given: _Given) -> _Table:
         return {**_MONITOR, **given}
 
     def _start(self, name: str, _: Evaluation, call: Call) -> Value:
@@ -489,7 +484,7 @@ class MoveItConfigurations:
                 yield StartRow("tf2_ros/static_transform_publisher", arguments=tuple(words))
 
 
-def _named(call: Call, names: Sequence[str]) -> dict[str, Value]:
+def _named(call: Call, names: Sequence[str]) -> _Table:
     """Return the arguments of a call by their names, but those that are None.
 
     Raises EvaluationFails.
@@ -499,10 +494,10 @@ def _named(call: Call, names: Sequence[str]) -> dict[str, Value]:
         what = f"no argument {wrong!r}" if wrong is not None else f"at most {len(names)} arguments"
         raise EvaluationFails(f"{call.short} takes {what}", call.at)
     given = dict(zip(names, call.args, strict=False)) | call.kwargs
-    return {name: value for name, value in given.items() if value is not None}
+    return known_values(given)
 
 
-def _mappings(given: Mapping[str, Value]) -> tuple[tuple[str, str | None], ...]:
+def _mappings(given: _Given) -> tuple[tuple[str, str | None], ...]:
     """Return the arguments that xacro gets; None for one that is a substitution."""
     table = given.get("mappings", {})
     if not isinstance(table, dict):
@@ -525,7 +520,7 @@ def _read_value(node: YamlNode, depth: int) -> Value:
             return yaml_value(text)
 
 
-def _spread(table: Value) -> dict[str, Value]:
+def _spread(table: Value) -> _Table:
     """Return a table that becomes a part of another one; unknown ones have any name."""
     if isinstance(table, dict):
         return dict(table)
@@ -543,8 +538,8 @@ def _default_pipeline(pipelines: Sequence[Value], wanted: Value, at: Position) -
     return default
 
 
-def _as_dict(parts: Mapping[str, Value]) -> dict[str, Value]:
-    entries: dict[str, Value] = {}
+def _as_dict(parts: _Given) -> _Table:
+    entries: _Table = {}
     for name in _PARTS:
         entries |= parts[name]
     for name, table in parts["pilz_cartesian_limits"].items():
@@ -565,13 +560,11 @@ class _Actions:
 
     at: Position
     configs: Namespace
-    folders: Mapping[str, str]
+    folders: StringsByName
 
     def made(self, kind: str, **kwargs: Value) -> Call:
         """Return an action, condition or substitution; arguments that are None are ignored."""
-        return Call(
-            kind, [], {name: value for name, value in kwargs.items() if value is not None}, self.at
-        )
+        return Call(kind, [], known_values(kwargs), self.at)
 
     def argument(self, name: str, default: str, *, is_flag: bool) -> Call:
         """Return the declaration of a launch argument."""
@@ -595,7 +588,7 @@ class _Actions:
             source = self.value(row.include)
             return [self.made(_INCLUDE, launch_description_source=source, condition=condition)]
         package, _, executable = row.node.partition("/")
-        parameters: list[Value] = []
+        parameters = []
         for name in row.parts:
             part = self.configs.find(name)
             parameters.append(part.run() if isinstance(part, PlainFunction) else part)
@@ -608,9 +601,9 @@ class _Actions:
             _NODE,
             package=package,
             executable=executable,
-            arguments=[*map(self.value, row.arguments)],
+            arguments=list(map(self.value, row.arguments)),
             parameters=parameters,
-            remappings=[*map(tuple, row.remappings)],
+            remappings=list(map(tuple, row.remappings)),
         )
         if not row.debug:
             return [node(condition=condition)]
@@ -622,7 +615,7 @@ class _Actions:
         return self.made(kind, predicate_expression=self.value(f"${name}"))
 
 
-def _controllers_in(table: Mapping[str, Value], at: Position) -> list[Value]:
+def _controllers_in(table: _Given, at: Position) -> list[Value]:
     """Return the arguments of the spawners of the controllers that MoveIt uses."""
     manager = table.get("moveit_simple_controller_manager", {})
     names = manager.get("controller_names", []) if isinstance(manager, dict) else None
@@ -636,6 +629,6 @@ def _virtual_joints(text: str) -> Iterator[list[str]]:
     for joint in re.findall(r"<virtual_joint\b[^<>]*>", re.sub(r"(?s)<!--.*?-->", "", text)):
         parent = re.search(r"\bparent_frame=[\"']([^\"']*)", joint)
         child = re.search(r"\bchild_link=[\"']([^\"']*)", joint)
-        frame = parent[1] if parent is not None else ""
-        link = child[1] if child is not None else ""
+        frame = parent[1] if parent else ""
+        link = child[1] if child else ""
         yield ["--frame-id", frame, "--child-frame-id", link]

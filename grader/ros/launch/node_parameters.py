@@ -7,11 +7,14 @@ line, in order.
 import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import chain, pairwise
+from itertools import chain, pairwise, starmap
 from math import inf, nan
 from pathlib import PurePosixPath
-from typing import Any, NamedTuple
+from typing import Any
 
+from grader.base.grouping import as_list
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml, yaml_value
 from grader.ros.config.yaml_values import is_misspelt_key
@@ -42,6 +45,7 @@ from grader.ros.launch.substitutions import (
     TEXT_PARTS,
     boolean,
     known_text,
+    located,
     not_a_text,
     resolve,
 )
@@ -55,6 +59,10 @@ from grader.ros.python.values import (
     Value,
 )
 
+_KnownValues = Mapping[str, ParameterValue]
+
+_Values = dict[str, ParameterValue]  # parameters by their names
+
 _EVERY_NODE = "/**"
 # the launch configuration that has what SetParameter gives to all nodes, as in launch_ros
 TO_ALL = "global_params"
@@ -63,19 +71,19 @@ _MAX_DEPTH = 40
 _MAX_WORD = 40  # characters of a text that may be read as a number
 _HEAD = '<?xml version="1.0" ?>\n<!-- by xacro -->\n'  # of what xacro writes
 # xacro writes blanks in place of tabs, but for those in comments.
-_COMMENT_OR_TAB = re.compile(r"<!--.*?(?:-->|\Z)|\t", re.DOTALL)
+_COMMENT_OR_TAB = on_use(r"<!--.*?(?:-->|\Z)|\t", re.DOTALL)
 _KEY = "ros__parameters"
 _SUBSTITUTION = "$("
 # As rcl reads a scalar of YAML, which is not what PyYAML makes of it.
 _TRUE = frozenset(["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"])
 _FALSE = frozenset(["N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"])
-_INTEGER = re.compile(r"([+-]?)(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
-_FLOAT = re.compile(r"[+-]?([0-9]++\.?[0-9]*+|\.[0-9]++)([eE][+-]?[0-9]+)?")
+_INTEGER = on_use(r"([+-]?)(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
+_FLOAT = on_use(r"[+-]?([0-9]++\.?[0-9]*+|\.[0-9]++)([eE][+-]?[0-9]+)?")
 _SPECIAL = {".nan": nan, ".inf": inf, "+.inf": inf, "-.inf": -inf}
 _PARAM_FILES = ("-p", "--param-file")
 
 
-class _Place(NamedTuple):
+class _Place(Named):
     """Where the parameters of a node are written: in which action, and the place of it."""
 
     context: Context
@@ -144,7 +152,8 @@ def _read_item(item: Value, place: _Place) -> _Read:
 
 def _read_file(call: Call, place: _Place) -> _Read:
     """Yield the file of a ParameterFile. Raises EvaluationSignal."""
-    path = _resolve_path(call, place.context)
+    with located(call.at):
+        path = _resolve_path(call, place.context)
     is_plain = call.kwargs.get("allow_substs") in (None, False)
     text = place.context.find_text(path) if isinstance(path, str) else None
     if not is_plain and (text is None or _SUBSTITUTION in text):
@@ -155,7 +164,7 @@ def _read_file(call: Call, place: _Place) -> _Read:
 def _make_file(path: Resolved, place: _Place, *, is_plain: bool = True) -> GivenParameters:
     if isinstance(path, str):
         return GivenParameters(place.location, path, is_plain=is_plain)
-    return GivenParameters(place.location, unknown=str(not_a_text(path, place.at)))
+    return GivenParameters(place.location, unknown=str(not_a_text(path)))
 
 
 def _read_table(table: dict[Any, Value], place: _Place) -> _Read:
@@ -164,7 +173,7 @@ def _read_table(table: dict[Any, Value], place: _Place) -> _Read:
     Raises EvaluationSignal for names and for dicts in it.
     """
     context, at, location, is_named = place
-    values: dict[str, ParameterValue] = {}
+    values: _Values = {}
     for key, value in table.items():
         name = resolve(key, context, at)
         if not isinstance(name, str):
@@ -172,7 +181,7 @@ def _read_table(table: dict[Any, Value], place: _Place) -> _Read:
                 _evaluate_dict(table, context, at)  # launch needs no name to go on
             except EvaluationSignal as signal:
                 yield signal
-            yield GivenParameters(location, unknown=str(not_a_text(name, at)))
+            yield GivenParameters(location, unknown=str(not_a_text(name)))
             return
         try:
             evaluated = _evaluate_dict({name: value}, context, at)
@@ -190,10 +199,8 @@ def _resolve_path(call: Call, context: Context) -> Resolved:
     given = call.kwargs["param_file"]
     if isinstance(given, PurePosixPath):
         return str(given)
-    if not all(
-        isinstance(part, TEXT_PARTS) for part in (given if isinstance(given, list) else [given])
-    ):
-        raise Undetermined("the path of a parameter file is not evaluated", call.at)
+    if not all(isinstance(part, TEXT_PARTS) for part in as_list(given)):
+        raise Undetermined("the path of a parameter file is not evaluated")
     return resolve(given, context, call.at)
 
 
@@ -202,7 +209,7 @@ def _evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> d
 
     Raises EvaluationSignal.
     """
-    values: dict[str, Any] = {}
+    values = {}
     for key, value in table.items():
         name = resolve(key, context, at)
         if not isinstance(name, str):
@@ -218,7 +225,8 @@ def _evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> d
 def _evaluate_value(name: str, value: Value, context: Context, at: Position) -> Any:
     match value:
         case Call() if value.name in TYPED:
-            return _evaluate_typed(value, context)
+            with located(value.at):
+                return _evaluate_typed(value, context)
         case UnknownText():
             resolve(value, context, at)
         case list() | tuple() | range():
@@ -235,11 +243,11 @@ def _evaluate_list(name: str, items: list[Value], context: Context, at: Position
     ):
         return _read_as_yaml(name, items, context, at)
     if not items or not all(isinstance(item, SCALARS) for item in items):
-        raise Undetermined(f"the value of the parameter {name!r} is not evaluated", at)
+        raise Undetermined(f"the value of the parameter {name!r} is not evaluated")
     if len(kinds) > 1 and kinds != {int, float}:
-        raise EvaluationFails(f"the parameter {name!r} is a list of values of different types", at)
+        raise EvaluationFails(f"the parameter {name!r} is a list of values of different types")
     if len(kinds) > 1:
-        return [*map(float, items)]
+        return list(map(float, items))
     return items
 
 
@@ -254,21 +262,21 @@ def _evaluate_typed(call: Call, context: Context) -> Any:
     try:
         kind = read_type(call)
     except Undetermined as error:
-        raise Undetermined(f"{error} is not evaluated", call.at) from None
+        raise Undetermined(f"{error} is not evaluated") from None
     if kind is None:
         return _read_as_yaml("value", value, context, call.at)
     text = resolve(value, context, call.at)
     if kind is str:
         return text
     if not isinstance(text, str):
-        raise Undetermined("the value of a parameter is not evaluated", call.at)
+        raise Undetermined("the value of a parameter is not evaluated")
     try:
         if kind is bool:
-            return boolean(text, call.at)
+            return boolean(text)
         return kind(text)
     except ValueError:
         raise EvaluationFails(
-            f"the value {text[:40]!r} of a parameter is not {kind.__name__}", call.at
+            f"the value {text[:40]!r} of a parameter is not {kind.__name__}"
         ) from None
 
 
@@ -280,7 +288,6 @@ def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> An
         hint = "write ParameterValue(..., value_type=str)"
         raise EvaluationFails(
             f"the parameter {name!r} is read as YAML, and is {describe_kind(loaded)} then: {hint}",
-            at,
         )
     return loaded
 
@@ -290,14 +297,14 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
     resolved = resolve(value, context, at)
     if isinstance(resolved, Unknown):
         raise Undetermined(
-            f"the value of the parameter {name!r} is not evaluated: {resolved.reason}", at
+            f"the value of the parameter {name!r} is not evaluated: {resolved.reason}"
         )
     text = context.find_text(resolved.path) if isinstance(resolved, Contents) else resolved
     if text is None:
         return ""  # a file that is not there is reported for itself
     try:
         if len(text) > _MAX_YAML:
-            raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
+            raise Undetermined(f"the parameter {name!r} is too long to be read as YAML")
         if isinstance(resolved, Contents) and resolved.by == "xacro":
             text = _COMMENT_OR_TAB.sub(lambda match: " " if match[0] == "\t" else match[0], text)
         return yaml_value(text) if text else text
@@ -305,11 +312,10 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
         if isinstance(resolved, Contents) and resolved.by == "xacro" and not _is_never_yaml(text):
             raise Undetermined(
                 f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated",
-                at,
             ) from None
         hint = "write ParameterValue(..., value_type=str)"
         raise EvaluationFails(
-            f"the parameter {name!r} is read as YAML, which fails: {hint}", at
+            f"the parameter {name!r} is read as YAML, which fails: {hint}"
         ) from None
 
 
@@ -346,7 +352,7 @@ def set_for_all(
     """
     evaluated = _evaluate_dict({"": value}, context, at)
     try:
-        prefix = known_text(name, context, at)
+        prefix = known_text(name, context)
     except EvaluationSignal as signal:
         return GivenParameters(location, unknown=str(signal))
     values = _parameter_values(evaluated, value, at, location)
@@ -362,16 +368,9 @@ def _as_rule(given: ParameterValue) -> ParameterValue:
     return given._replace(value=_read_text(str(value)))
 
 
-def file_for_all(
-    path: Value, context: Context, at: Position, location: Location
-) -> GivenParameters:
-    """Return the file that SetParametersFromFile gives to all nodes. Raises EvaluationSignal."""
-    return GivenParameters(location, known_text(path, context, at))
-
-
 def _parameter_values(
     evaluated: Mapping[str, Any], value: Value, at: Position, location: Location
-) -> dict[str, ParameterValue]:
+) -> _Values:
     """Return what a value in a table gives by the names of parameters, with its place."""
     given_at = None
     if isinstance(value, Call) and location.line != value.at.line:
@@ -476,7 +475,7 @@ def _scalar(text: str) -> "bool | int | float | str":
     return text
 
 
-class NodeParameters(NamedTuple):
+class NodeParameters(Named):
     """The parameters that a node is given, by their names.
 
     If something is `unknown`, there may be more of them.
@@ -484,20 +483,20 @@ class NodeParameters(NamedTuple):
     The value of one is Unknown where it is not evaluated, or may be replaced by what is unknown.
     """
 
-    values: Mapping[str, ParameterValue]
+    values: _KnownValues
     node: StartedNode  # that is given them
     unknown: str = ""  # why there may be more
 
 
-class _Table(NamedTuple):
+class _Table(Named):
     """What a section of a parameter file, or a launch file, gives the nodes of a key."""
 
     key: str | None
-    known: Mapping[str, ParameterValue]
+    known: _KnownValues
     opened: Mapping[str, Unknown] = {}  # tables that are not known, whose names are not either
 
 
-class FileTables(NamedTuple):
+class FileTables(Named):
     """The sections of a parameter file, or why it is not read."""
 
     tables: tuple[_Table, ...]
@@ -522,12 +521,12 @@ def read_tables(
     sections = tuple(_sections(root, "", visits, is_plain=is_plain, is_meant=are_keys_meant))
     if not visits.is_complete:
         return FileTables((), f"the file {path} has too many aliases to read")
-    return FileTables(tuple(_make_table(key, values) for key, values in sections))
+    return FileTables(tuple(starmap(_make_table, sections)))
 
 
-def _make_table(key: str | None, values: Mapping[str, ParameterValue]) -> _Table:
-    known: dict[str, ParameterValue] = {}
-    opened: dict[str, Unknown] = {}
+def _make_table(key: str | None, values: _KnownValues) -> _Table:
+    known = {}
+    opened = {}
     for parameter, row in values.items():
         if isinstance(row.value, UnknownTable):
             opened[parameter] = row.value
@@ -554,7 +553,7 @@ def collect_parameters(
         read: Returns the sections of a parameter file.
     """
     full = _full_name(node, name)
-    by_key: dict[str | None, dict[str, ParameterValue]] = {}
+    by_key: dict[str | None, _Values] = {}
     reasons = []
     if node.parameters is None:
         return NodeParameters({}, node, "the parameters of the node are not evaluated")
@@ -576,9 +575,7 @@ def collect_parameters(
     return NodeParameters(_select_values(by_key, full), node, "; ".join(dict.fromkeys(reasons)))
 
 
-def _forget_below(
-    tables: Mapping[str, Unknown], by_key: dict[str | None, dict[str, ParameterValue]]
-) -> None:
+def _forget_below(tables: Mapping[str, Unknown], by_key: dict[str | None, _Values]) -> None:
     """Make the values unknown that parameters in a table that is not known may replace."""
     for name, doubt in tables.items():
         for values in by_key.values():
@@ -633,7 +630,7 @@ def _find_key(given: GivenParameters, full_name: str | None) -> str | None:
 
 def _sections(
     node: YamlNode, key: str, visits: Visits, *, is_plain: bool, is_meant: bool
-) -> Iterator[tuple[str, dict[str, ParameterValue]]]:
+) -> Iterator[tuple[str, _Values]]:
     """Yield the sections of a parameter file, each with its key, which begins with a slash.
 
     With `is_meant`, a misspelt key ros__parameters is one as well.
@@ -642,7 +639,7 @@ def _sections(
         return
     for name, value in node.pairs:
         if name == _KEY or (is_meant and is_misspelt_key(name, value)):
-            values: dict[str, ParameterValue] = {}
+            values = {}
             for parameter, row, named_at in _flat(value, "", None, 0, visits):
                 if isinstance(row.value, str | list):
                     given = value_in_file(row, is_plain=is_plain)
@@ -677,9 +674,7 @@ def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
     return ParameterValue(_read_value(node), node.location)
 
 
-def _select_values(
-    by_key: Mapping[str | None, Mapping[str, ParameterValue]], full: str | None
-) -> dict[str, ParameterValue]:
+def _select_values(by_key: Mapping[str | None, _KnownValues], full: str | None) -> _Values:
     """Return the values that count for a node.
 
     They are of all sections in the order in which their keys are met first.
@@ -690,8 +685,8 @@ def _select_values(
 
 
 def _select_for_any_name(
-    by_key: Mapping[str | None, Mapping[str, ParameterValue]],
-) -> dict[str, ParameterValue]:
+    by_key: Mapping[str | None, _KnownValues],
+) -> _Values:
     """Return the values of sections for every node.
 
     Those that another section may replace are unknown.
@@ -702,8 +697,8 @@ def _select_for_any_name(
     return {**known, **{name: given._replace(value=doubt) for name, given in others.items()}}
 
 
-def _merge(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, ParameterValue]:
-    merged: dict[str, ParameterValue] = {}
+def _merge(tables: Iterable[_KnownValues]) -> _Values:
+    merged: _Values = {}
     for table in tables:
         merged |= table
     return merged
@@ -762,7 +757,7 @@ def list_controllers(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
 
 def _read_spawner_words(words: Sequence[str]) -> tuple[list[str], dict[str, list[str]]]:
     """Return the names of controllers in a spawner's command line, and its options."""
-    names: list[str] = []
+    names = []
     given: dict[str, list[str]] = {}
     options = program_row("controller_manager", "spawner").valued_options
     if "--ros-args" in words:

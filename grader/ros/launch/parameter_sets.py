@@ -1,23 +1,15 @@
 """Sets among the parameters of nodes in launch files in Python, where dictionaries are meant."""
 
 import ast
-import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source
 from grader.ros.python.parse import Code, parse
 from grader.ros.python.walking import walk
 
 # A text in braces that a comma follows: only such files are parsed.
-_MAY_BE_SET = re.compile(r"\{\s*+['\"][^'\"\n]*+['\"]\s*+,")
-
-
-class _ParameterSet(NamedTuple):
-    """A set of at least two texts or numbers, as it is written, and its place."""
-
-    text: str
-    location: Location
+_MAY_BE_SET = on_use(r"\{\s*+['\"][^'\"\n]*+['\"]\s*+,")
 
 
 def may_have_sets(source: Source) -> bool:
@@ -25,8 +17,10 @@ def may_have_sets(source: Source) -> bool:
     return source.path.endswith(".py") and _MAY_BE_SET.search(source.text) is not None
 
 
-def parameter_sets(source: Source) -> Iterator[_ParameterSet]:
-    """Yield the sets in the lists of parameters of a launch file, without those of one item.
+def parameter_sets(source: Source) -> Iterator[tuple[str, Location]]:
+    """Yield the sets in the lists of parameters of a launch file, as written, with their places.
+
+    Those of one item are left out.
 
     launch_ros takes what is no dictionary for the path of a file (normalize_parameters.py): a set
     of one text may be meant so.
@@ -40,7 +34,7 @@ def parameter_sets(source: Source) -> Iterator[_ParameterSet]:
                 for item in items:
                     if isinstance(item, ast.Set) and _is_table(item):
                         at = code.at(item)
-                        yield _ParameterSet(ast.unparse(item), at)
+                        yield ast.unparse(item), at
 
 
 def _is_table(items: ast.Set) -> bool:

@@ -13,6 +13,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
+from grader.base.grouping import Strings
+from grader.base.names import last_part
+from grader.base.patterns import on_use
 from grader.ros.installation.places import PREFIX, ROS, SHARE
 from grader.ros.known.package_rows import package_row, program_row
 from grader.ros.known.ros_machine import ros_machine
@@ -29,6 +32,7 @@ from grader.ros.launch.launch_model import (
     Purpose,
     Resolved,
     StartedNode,
+    When,
 )
 from grader.ros.launch.node_parameters import (
     TO_ALL,
@@ -56,9 +60,7 @@ _GIVEN: Mapping[str, Purpose] = {
     _RVIZ: "rviz",
 }  # the nodes that are given a file
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
-_STARTS = re.compile(
-    rf"ros2\s++(?:run|launch|component\s++(?:load|standalone))|rviz2|{PART_UNKNOWN}"
-)
+_STARTS = on_use(rf"ros2\s++(?:run|launch|component\s++(?:load|standalone))|rviz2|{PART_UNKNOWN}")
 # Debuggers, terminals and other programs that start the program behind them.
 _PREFIXES = frozenset(
     {
@@ -86,14 +88,14 @@ _PREFIXES = frozenset(
         "python3",
     }
 )
-_NAMESPACE = re.compile(r"|/|/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
+_NAMESPACE = on_use(r"|/|/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 
 
 def start_node(
     findings: Findings,
     call: Call,
     context: Context,
-    when: bool | None,
+    when: When,
     parameters: Iterable[GivenParameters] = (),
 ) -> None:
     """Add the node that a Node action starts, and the files that it is given.
@@ -151,11 +153,11 @@ def _add_names(
 
     Also return whether it is given the robot itself.
     """
-    words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
-    ros_words: list[str] = []
+    words = _words_of_argument(call, "arguments", context)
+    ros_words = []
     if "--ros-args" in words:
         ros_words = words[words.index("--ros-args") + 1 :]
-    ros_words += _resolve_words(call.kwargs.get("ros_arguments"), context, call.at)
+    ros_words += _words_of_argument(call, "ros_arguments", context)
     rules = remap_rules(ros_words)
     # robot_state_publisher still reads a URDF whose path is its first argument.
     has_description = bool(words) and not words[0].startswith("-") and node.executable != _RVIZ
@@ -178,7 +180,7 @@ def _add_names(
         included_by=context.included_by,
         has_prefix=bool(call.kwargs.get("prefix")),
     )
-    return _add_remaps(node, rules, [*words, *ros_words], call, context)
+    return _add_remaps(node, rules, words + ros_words, call, context)
 
 
 def _add_remaps(
@@ -192,11 +194,11 @@ def _add_remaps(
 
     `rules` are those among the words of its command line.
     """
-    remaps: list[tuple[str, ...] | None] = [(name, to) for name, _, to in rules]
+    remaps: list[Strings | None] = [(name, to) for name, _, to in rules]
     remaps += context.to_all.get(REMAPS, ())
     try:
         below = call.kwargs.get("namespace") or ""
-        namespace: str | None = namespace_below(below, context, call.at)
+        namespace: str | None = namespace_below(below, context)
         remaps += evaluate_remaps(call, context)
     except EvaluationSignal:
         return node._replace(namespace=None, remaps=None)
@@ -209,12 +211,12 @@ def _add_remaps(
     return node._replace(namespace=namespace, remaps=known)
 
 
-def evaluate_remaps(call: Call, context: Context) -> list[tuple[str, ...]]:
+def evaluate_remaps(call: Call, context: Context) -> list[Strings]:
     """Return the remappings that a Node action has. Raises EvaluationSignal."""
     remaps = []
     for rule in items_in(call.kwargs.get("remappings") or ()) or ():
         names = items_in(rule) or ()
-        remaps.append(tuple(known_text(name, context, call.at) for name in names))
+        remaps.append(tuple(known_text(name, context) for name in names))
     return remaps
 
 
@@ -228,13 +230,13 @@ def _given_name(rules: Iterable[tuple[str, str, str]], call: Call, context: Cont
     return text if isinstance(text, str) else None
 
 
-def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> list[str]:
+def start_process(findings: Findings, call: Call, context: Context, when: When) -> list[str]:
     """Add the node that a command starts, if it does; else return the words of the command."""
-    if when is False:
-        return []
     words = _words_of_command(call, context)
+    if when is False:
+        return words
     node = _node_of_command(words, call)
-    if node is not None:
+    if node:
         start_node(findings, node, context, when)
         return []
     if _STARTS.search(" ".join(words)):
@@ -243,7 +245,7 @@ def start_process(findings: Findings, call: Call, context: Context, when: bool |
 
 
 def _words_of_command(call: Call, context: Context) -> list[str]:
-    words = _resolve_words(call.kwargs["cmd"], context, call.at)
+    words = _words_of_argument(call, "cmd", context)
     if call.kwargs.get("shell"):
         with suppress(ValueError):
             return shlex.split(" ".join(words))
@@ -258,9 +260,8 @@ def ends_by_itself(action: Value, context: Context) -> bool:
         words = _words_of_command(action, context)
     elif "executable" in action.kwargs:
         program = [action.kwargs.get("package"), action.kwargs["executable"]]
-        arguments = action.kwargs.get("arguments")
         words = ["ros2", "run", *_resolve_words(program, context, action.at)]
-        words += _resolve_words(arguments, context, action.at)
+        words += _words_of_argument(action, "arguments", context)
     else:
         return False
     if words[:2] == ["ros2", "run"] and len(words) > 3:
@@ -308,17 +309,18 @@ def evaluate_node(call: Call, context: Context) -> None:
     Raises EvaluationSignal.
     """
     evaluate_process(call, context)
-    name, namespace = call.kwargs.get("name"), call.kwargs.get("namespace")
-    if name is not None and not is_node_name(text := known_text(name, context, call.at)):
+    name = call.kwargs.get("name")
+    namespace = call.kwargs.get("namespace")
+    if name is not None and not is_node_name(text := known_text(name, context)):
         raise EvaluationFails(
-            f"the name of the node, {text!r}, is not valid: use letters, digits and _", call.at
+            f"the name of the node, {text!r}, is not valid: use letters, digits and _"
         )
     if namespace is not None or NAMESPACE in context.arguments:
-        namespace_below(namespace or "", context, call.at)
+        namespace_below(namespace or "", context)
     if call.kwargs.get("package") is not None:
-        package = known_text(call.kwargs["package"], context, call.at)
-        program = known_text(call.kwargs["executable"], context, call.at)
-        check_program(package, program, context, call.at)
+        package = known_text(call.kwargs["package"], context)
+        program = known_text(call.kwargs["executable"], context)
+        check_program(package, program, context)
 
 
 def evaluate_process(call: Call, context: Context) -> None:
@@ -328,38 +330,39 @@ def evaluate_process(call: Call, context: Context) -> None:
     """
     if "cmd" in call.kwargs:
         if not items_in(call.kwargs["cmd"]):
-            raise EvaluationFails("cmd is empty", call.at)
-        words = _resolve_words(call.kwargs["cmd"], context, call.at)
+            raise EvaluationFails("cmd is empty")
+        words = _words_of_argument(call, "cmd", context)
         node = _node_of_command(words, call)
-        if node is not None:
-            check_program(node.kwargs["package"], node.kwargs["executable"], context, call.at)
+        if node:
+            check_program(node.kwargs["package"], node.kwargs["executable"], context)
     try:
-        prefix = shlex.split(known_text(call.kwargs.get("prefix") or "", context, call.at))
+        prefix = shlex.split(known_text(call.kwargs.get("prefix") or "", context))
     except ValueError:
-        raise EvaluationFails("the quotes in a prefix are not closed", call.at) from None
+        raise EvaluationFails("the quotes in a prefix are not closed") from None
     if prefix and posixpath.basename(prefix[0]) not in _PREFIXES:
         raise Undetermined(
-            f"whether the prefix {prefix[0][:40]!r} starts the program is not evaluated", call.at
+            f"whether the prefix {prefix[0][:40]!r} starts the program is not evaluated"
         )
     output = call.kwargs.get("output", "log")
     if isinstance(output, dict):
         if not output.keys() <= {"stdout", "stderr", "both"}:
-            raise EvaluationFails("output has the keys stdout, stderr and both only", call.at)
+            raise EvaluationFails("output has the keys stdout, stderr and both only")
         return
-    text = known_text(output, context, call.at)
+    text = known_text(output, context)
     if text not in _OUTPUTS:
-        raise EvaluationFails(f"output={text!r} is not one of {', '.join(_OUTPUTS)}", call.at)
+        raise EvaluationFails(f"output={text!r} is not one of {', '.join(_OUTPUTS)}")
 
 
-def namespace_below(value: Value, context: Context, at: Position) -> str:
+def namespace_below(value: Value, context: Context) -> str:
     """Return a namespace below the one that the launch file has set. Raises EvaluationSignal."""
-    text, above = known_text(value, context, at), context.arguments.get(NAMESPACE, "")
+    text = known_text(value, context)
+    above = context.arguments.get(NAMESPACE, "")
     if re.search(r"[^\w/~{}]|[^\x00-\x7f]", text):
         raise EvaluationFails(
-            f"the namespace {text[:40]!r} is not valid: use letters, digits, _ and /", at
+            f"the namespace {text[:40]!r} is not valid: use letters, digits, _ and /"
         )
-    if _NAMESPACE.fullmatch(text) is None or not isinstance(above, str):
-        raise Undetermined(f"whether the namespace {text[:40]!r} is valid is not evaluated", at)
+    if not _NAMESPACE.fullmatch(text) or not isinstance(above, str):
+        raise Undetermined(f"whether the namespace {text[:40]!r} is valid is not evaluated")
     if text.startswith("/"):
         return text
     return "/".join(filter(None, (above.removesuffix("/"), text)))
@@ -372,7 +375,7 @@ def read_frame_prefix(call: Call, context: Context) -> str | None:
         for table in _tables_in(call.kwargs.get("parameters"))
         if "frame_prefix" in table
     ]
-    words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
+    words = _words_of_argument(call, "arguments", context)
     given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
     prefix = _text_if_known(_inner_value(given[-1]), context, call.at) if given else ""
     if isinstance(prefix, str) and PART_UNKNOWN not in prefix:
@@ -406,7 +409,7 @@ def _description_besides(
 
     Returns Unknown where that is not known, None if it gets none.
     """
-    words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
+    words = _words_of_argument(call, "arguments", context)
     for parameter in parameters:
         if isinstance(parameter, Unknown):
             return parameter
@@ -453,7 +456,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
         case Contents(path=path, by=by) if (
             by != "xacro" and path.endswith(".xacro") and context.find_text(path) is None
         ):
-            name = path.rpartition("/")[2]
+            name = last_part(path)
             message = (
                 f"{name} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
             )
@@ -522,7 +525,7 @@ def _unknown_configuration(arguments: Value, call: Call, context: Context) -> Un
 
 def _display_config(words: list[str]) -> str | None:
     """Return what follows -d; of several, the last counts, as for Qt's parser."""
-    path: str | None = None
+    path = None
     for index, word in enumerate(words):
         if word in ("-d", "--display-config"):
             path = "".join(words[index + 1 : index + 2])
@@ -551,6 +554,11 @@ def _resolve_words(value: Value, context: Context, at: Position) -> list[str]:
         items = [] if value is None else [value]
     texts = [_text_if_known(item, context, at) for item in items]
     return [text if isinstance(text, str) else PART_UNKNOWN for text in texts]
+
+
+def _words_of_argument(call: Call, name: str, context: Context) -> list[str]:
+    """Return the words that an argument of an action lists; none if it is not given."""
+    return _resolve_words(call.kwargs.get(name), context, call.at)
 
 
 def _inner_value(value: Value) -> Value:
@@ -582,7 +590,7 @@ def start_known_file(findings: Findings, path: str, call: Call, context: Context
     if not prefix.startswith((PREFIX, ROS)):
         return False
     launch = package_row(package).launch.get(file)
-    if launch is None:
+    if not launch:
         return False
     nodes = launch.starts
     above = context.arguments.get(NAMESPACE, "")

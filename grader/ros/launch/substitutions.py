@@ -3,12 +3,15 @@
 import posixpath
 import re
 import shlex
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import replace
 from math import isclose
 from pathlib import PurePosixPath
 
+from grader.base.grouping import as_list, texts_among
+from grader.base.names import last_part
+from grader.base.records import Record
 from grader.base.text import enumerated
 from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.installation.places import HOME, PREFIX, SHARE
@@ -19,11 +22,12 @@ from grader.ros.launch.launch_model import Contents, Context, FileText, Resolved
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.builtins import BUILTINS, MATH
 from grader.ros.python.expressions import evaluate
-from grader.ros.python.parse import Position
+from grader.ros.python.parse import START, Position
 from grader.ros.python.values import (
     MAX_TEXT,
     Call,
     EvaluationFails,
+    EvaluationSignal,
     MissingDeclaration,
     MissingValue,
     Namespace,
@@ -42,6 +46,16 @@ PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})
 
 
+@contextmanager
+def located(at: Position) -> Iterator[None]:
+    """Give signals a place that have none."""
+    try:
+        yield
+    except EvaluationSignal as signal:
+        signal.at = signal.at or at
+        raise
+
+
 def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Resolved:
     """Return the text of a value, or the contents of a file.
 
@@ -52,9 +66,9 @@ def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Res
     try:
         context.budget.charge(1)
     except OutOfBudget:
-        raise Undetermined(_TOO_DEEP, at) from None
+        raise Undetermined(_TOO_DEEP) from None
     if depth > _MAX_DEPTH:
-        raise Undetermined(_TOO_DEEP, at)
+        raise Undetermined(_TOO_DEEP)
     match value:
         case FileText(contents=contents):
             context.reads.append((contents, value.at))
@@ -67,7 +81,7 @@ def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Res
             return _Substitution(value, context, depth).value()
         case list() | tuple() | dict() | set():
             return _joined_text([resolve(part, context, at, depth + 1) for part in value], at)
-    raise Undetermined("the text of this value is not evaluated", at)
+    raise Undetermined("the text of this value is not evaluated")
 
 
 def listed(value: Value) -> Sequence[Value]:
@@ -78,55 +92,61 @@ def listed(value: Value) -> Sequence[Value]:
 def _joined_text(parts: list[Resolved], at: Position) -> Resolved:
     if len(parts) == 1:
         return parts[0]
-    texts = [part for part in parts if isinstance(part, str)]
+    texts = texts_among(parts)
     if len(texts) < len(parts):
         unknown = (part for part in parts if isinstance(part, Unknown))
         return next(unknown, Unknown("the content of a file is part of a string", at))
     if sum(map(len, texts)) > MAX_TEXT:
-        raise Undetermined("a string grows too long", at)
+        raise Undetermined("a string grows too long")
     return "".join(texts)
 
 
-def known_text(value: Value, context: Context, at: Position) -> str:
+def known_text(value: Value, context: Context) -> str:
     """Return the text of a value. Raises Undetermined where it is not known."""
-    text = resolve(value, context, at)
+    text = resolve(value, context, START)
     if isinstance(text, str):
         return text
-    raise not_a_text(text, at)
+    raise not_a_text(text)
 
 
-def not_a_text(value: Contents | Unknown, at: Position) -> Undetermined:
+def not_a_text(value: Contents | Unknown) -> Undetermined:
     """Return the signal that a text is needed in place of a value."""
     if isinstance(value, Unknown):
-        return value.as_signal(at)
-    return Undetermined("the content of a file is used as a text", at)
+        return value.as_signal()
+    return Undetermined("the content of a file is used as a text")
 
 
-def boolean(text: str, at: Position) -> bool:
+def boolean(text: str) -> bool:
     """Return the value of a text as launch reads it where it wants a boolean.
 
     It reads it by the rules of YAML.
     """
-    truth: object = _BOOLEANS[text] if text in ("0", "1") else None
+    truth = _BOOLEANS[text] if text in ("0", "1") else None
     if truth is None and len(text) < 20:
         with suppress(ValueError):
             truth = yaml_value(text)
     if not isinstance(truth, bool):
-        raise EvaluationFails(f"{text[:40]!r} is neither true nor false", at)
+        raise EvaluationFails(f"{text[:40]!r} is neither true nor false")
     return truth
 
 
 def condition_holds(given: Call, context: Context) -> bool:
     """Return whether a condition of `CONDITIONS` holds. Raises EvaluationSignal."""
+    with located(given.at):
+        return _holds(given, context)
+
+
+def _holds(given: Call, context: Context) -> bool:
     kind = given.short
     if kind in ("IfCondition", "UnlessCondition"):
-        text = known_text(given.kwargs["predicate_expression"], context, given.at)
+        text = known_text(given.kwargs["predicate_expression"], context)
         holds = _BOOLEANS.get(text.strip().lower())
         if holds is None:
-            raise EvaluationFails(f"a condition is {text[:40]!r}, expected true or false", given.at)
+            raise EvaluationFails(f"a condition is {text[:40]!r}, expected true or false")
         return holds == (kind == "IfCondition")
-    name, wanted = given.kwargs["launch_configuration_name"], given.kwargs["expected_value"]
-    expected = known_text(wanted, context, given.at) if wanted is not None else None
+    name = given.kwargs["launch_configuration_name"]
+    wanted = given.kwargs["expected_value"]
+    expected = known_text(wanted, context) if wanted is not None else None
     argument = (
         context.arguments.get(name) if isinstance(name, str) else None
     )  # no other object is the key of one
@@ -135,12 +155,11 @@ def condition_holds(given: Call, context: Context) -> bool:
         or (argument is None and context.has_others)
         or not isinstance(argument, str | None)
     ):
-        raise Undetermined("the launch configuration of this condition is not evaluated", given.at)
+        raise Undetermined("the launch configuration of this condition is not evaluated")
     return (argument == expected) == (kind == "LaunchConfigurationEquals")
 
 
-@dataclass(slots=True)
-class _Substitution:
+class _Substitution(Record):
     call: Call
     context: Context
     depth: int
@@ -151,9 +170,10 @@ class _Substitution:
 
     def value(self) -> Resolved:
         perform = PERFORMS.get(self.call.short)
-        if perform is None:
-            raise Undetermined(f"{self.call.short} is not evaluated", self.at)
-        return perform(self)
+        with located(self.at):
+            if perform is None:
+                raise Undetermined(f"{self.call.short} is not evaluated")
+            return perform(self)
 
     def resolve(self, value: Value) -> Resolved:
         return resolve(value, self.context, self.at, self.depth + 1)
@@ -162,28 +182,28 @@ class _Substitution:
         return self.resolve(self.call.kwargs.get(name, default))
 
     def known_argument(self, name: str) -> str:
-        return known_text(self.call.kwargs[name], self.context, self.at)
+        return known_text(self.call.kwargs[name], self.context)
 
     def texts(self, *values: Value) -> list[str] | Unknown:
         """Return the texts of some values; Unknown if one of them is."""
         results = [self.resolve(value) for value in values]
         unknown = next((result for result in results if isinstance(result, Unknown)), None)
-        texts = [result for result in results if isinstance(result, str)]
+        texts = texts_among(results)
         if len(texts) == len(results):
             return texts
         return unknown or Unknown("the content of a file is used", self.at)
 
     def configuration(self) -> Resolved:
-        name, arguments = self.argument("variable_name"), self.context.arguments
+        name = self.argument("variable_name")
+        arguments = self.context.arguments
         if not isinstance(name, str):
-            raise Undetermined("the name of a launch configuration is not evaluated", self.at)
+            raise Undetermined("the name of a launch configuration is not evaluated")
         if name in arguments:
             return arguments[name]
         default = self.call.kwargs.get("default")
         if self.context.has_others:
             raise Undetermined(
                 f"whether {name!r} is declared in a file that is not submitted is not evaluated",
-                self.at,
             )
         if default is not None:
             items = listed(default)
@@ -194,16 +214,15 @@ class _Substitution:
             f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare "
             "it before"
         )
-        raise MissingDeclaration(message, self.at)
+        raise MissingDeclaration(message)
 
     def variable(self) -> Resolved:
-        name, default = self.argument("name"), self.call.kwargs.get("default_value")
+        name = self.argument("name")
+        default = self.call.kwargs.get("default_value")
         if name == "HOME":
             return HOME
         if default is None:
-            raise Undetermined(
-                f"whether the environment variable {name!r} is set is not evaluated", self.at
-            )
+            raise Undetermined(f"whether the environment variable {name!r} is set is not evaluated")
         self.resolve(default)
         return Unknown("the environment is not evaluated", self.at)
 
@@ -216,7 +235,7 @@ class _Substitution:
         if isinstance(texts, Unknown):
             return texts
         if not texts:
-            raise EvaluationFails("PathJoinSubstitution is given no path", self.at)
+            raise EvaluationFails("PathJoinSubstitution is given no path")
         return posixpath.join(*texts)
 
     def joined_strings(self) -> Resolved:
@@ -225,7 +244,7 @@ class _Substitution:
         if isinstance(texts, Unknown):
             return texts
         if not isinstance(delimiter, str):
-            raise Undetermined("the delimiter of these strings is not evaluated", self.at)
+            raise Undetermined("the delimiter of these strings is not evaluated")
         return delimiter.join(texts)
 
     def package_folder(self) -> Resolved:
@@ -238,9 +257,7 @@ class _Substitution:
             return f"{SHARE}/{meant}"
         if not isinstance(package, str) or not self.context.machine.has_package(package):
             shown = repr(package) if isinstance(package, str) else "that is read from a file"
-            raise Undetermined(
-                f"whether the package {shown} is installed is not evaluated", self.at
-            )
+            raise Undetermined(f"whether the package {shown} is installed is not evaluated")
         return f"{SHARE}/{package}"
 
     def package_prefix(self) -> Resolved:
@@ -250,39 +267,39 @@ class _Substitution:
     def program(self) -> Resolved:
         name = self.argument("name")
         if isinstance(name, str) and name not in _PROGRAMS:
-            raise Undetermined(
-                f"whether the program {name!r} is installed is not evaluated", self.at
-            )
+            raise Undetermined(f"whether the program {name!r} is installed is not evaluated")
         return name
 
     def command(self) -> Resolved:
         mode = self.argument("on_stderr", "fail")
         if isinstance(mode, str) and mode not in ("fail", "ignore", "warn", "capture"):
-            raise EvaluationFails("on_stderr is one of fail, ignore, warn, capture", self.at)
+            raise EvaluationFails("on_stderr is one of fail, ignore, warn, capture")
         texts = [self.resolve(part) for part in listed(self.call.kwargs["command"])]
-        contents = _command_output(texts, self.at, stops_at_stderr=mode == "fail")
+        contents = _command_output(texts, stops_at_stderr=mode == "fail")
         self.context.reads.append((contents, self.at))
         return contents
 
     def expression(self) -> Resolved:
         texts = self.texts(self.call.kwargs["expression"])
         if isinstance(texts, Unknown):
-            raise Undetermined(f"this expression is not evaluated: {texts.reason}", self.at)
+            raise Undetermined(f"this expression is not evaluated: {texts.reason}")
         modules = self.texts(*listed(self.call.kwargs.get("python_modules", ["math"])))
         if modules != ["math"]:
-            raise Undetermined("the modules of this expression are not evaluated", self.at)
-        return _expression_text(texts[0], self.at, self.context)
+            raise Undetermined("the modules of this expression are not evaluated")
+        return _expression_text(texts[0], self.context)
 
     def is_true(self, name: str) -> bool:
         """Return an argument that is read as a boolean."""
-        return boolean(self.known_argument(name), self.at)
+        return boolean(self.known_argument(name))
 
     def both(self) -> str:
-        left, right = self.is_true("left"), self.is_true("right")
+        left = self.is_true("left")
+        right = self.is_true("right")
         return str(left and right).lower()
 
     def either(self) -> str:
-        left, right = self.is_true("left"), self.is_true("right")
+        left = self.is_true("left")
+        right = self.is_true("right")
         return str(left or right).lower()
 
     def choice(self) -> Resolved:
@@ -305,11 +322,9 @@ class _Substitution:
             value = str(value).lower()
         elif isinstance(value, int | float):
             value = str(value)
-        elif not all(
-            isinstance(part, TEXT_PARTS) for part in (value if isinstance(value, list) else [value])
-        ):
-            raise Undetermined("the text of a list in this substitution is not evaluated", self.at)
-        return known_text(value, self.context, self.at)
+        elif not all(isinstance(part, TEXT_PARTS) for part in as_list(value)):
+            raise Undetermined("the text of a list in this substitution is not evaluated")
+        return known_text(value, self.context)
 
     def file_content(self) -> Contents:
         contents = Contents(self.known_argument("path"), "open")
@@ -318,8 +333,9 @@ class _Substitution:
 
     def executable(self) -> Resolved:
         """Return the path of a program of a package. Raises EvaluationSignal."""
-        package, name = self.known_argument("package"), self.known_argument("executable")
-        check_program(package, name, self.context, self.at)
+        package = self.known_argument("package")
+        name = self.known_argument("executable")
+        check_program(package, name, self.context)
         return f"{PREFIX}/lib/{package}/{name}"
 
 
@@ -328,16 +344,16 @@ def no_package(name: str, meant: str) -> str:
     return f"there is no package {name!r}; did you mean {meant!r}?"
 
 
-def check_program(package: str, name: str, context: Context, at: Position) -> None:
+def check_program(package: str, name: str, context: Context) -> None:
     """Raise EvaluationFails if a package certainly has no such program.
 
     Raises Undetermined if this is not known.
     """
     if not context.machine.has_package(package):
-        raise Undetermined(f"whether the package {package!r} is installed is not evaluated", at)
+        raise Undetermined(f"whether the package {package!r} is installed is not evaluated")
     is_there = context.machine.has_program(package, name)
     if is_there is None:
-        raise Undetermined(f"whether {package!r} has the program {name!r} is not evaluated", at)
+        raise Undetermined(f"whether {package!r} has the program {name!r} is not evaluated")
     if not is_there:
         others = enumerated(find_programs(package)) or "none"
         manifest = context.machine.open_installed(f"share/{package}/package.xml")
@@ -346,7 +362,7 @@ def check_program(package: str, name: str, context: Context, at: Position) -> No
             listed = "install(PROGRAMS ...) and install(TARGETS ...) in CMakeLists.txt"
         where = f" in lib/{package}: see {listed}"
         known = f"; it has {others}" if package_row(package).is_installed else where
-        raise EvaluationFails(f"the package {package!r} has no program {name!r}{known}", at)
+        raise EvaluationFails(f"the package {package!r} has no program {name!r}{known}")
 
 
 # The conditions that are evaluated.
@@ -384,15 +400,15 @@ PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
 }
 
 
-def _expression_text(text: str, at: Position, context: Context) -> str:
+def _expression_text(text: str, context: Context) -> str:
     """Return the value of a PythonExpression as a text. Raises EvaluationSignal."""
     budget = Budget(_WORK, whole=context.budget.whole)
     try:
         return charge_str(evaluate(text, _find_name, budget))
     except EvaluationFails as error:
-        raise EvaluationFails(f"the expression {text[:60]!r} fails: {error}", at) from None
+        raise EvaluationFails(f"the expression {text[:60]!r} fails: {error}") from None
     except (Undetermined, OutOfBudget) as error:
-        raise Undetermined(f"this expression is not evaluated: {error}", at) from None
+        raise Undetermined(f"this expression is not evaluated: {error}") from None
     finally:
         context.budget.left -= budget.used
 
@@ -407,23 +423,23 @@ def _find_name(name: str) -> Value:
     raise EvaluationFails(f"the name {name!r} is not defined")
 
 
-def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr: bool) -> Contents:
+def _command_output(texts: Sequence[Resolved], *, stops_at_stderr: bool) -> Contents:
     """Return the contents of the file that a command prints, whose parts have these texts.
 
     Raises EvaluationSignal.
     """
     command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()
-    words = _split_command(command[:MAX_TEXT], at)
+    words = _split_command(command[:MAX_TEXT])
     if words[:3] == ["ros2", "run", "xacro"]:
         words = words[3:]
     if words == ["xacro"] and "" in texts:
-        raise MissingValue("xacro is given no file: the text of a launch argument is empty", at)
-    check_xacro_words(words, at)
+        raise MissingValue("xacro is given no file: the text of a launch argument is empty")
+    check_xacro_words(words)
     contents = printed_file(words)
-    if contents is None:
+    if not contents:
         unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
         raise Undetermined(
-            f"the output of this command is not evaluated{unknown and ': ' + unknown}", at
+            f"the output of this command is not evaluated{unknown and ': ' + unknown}"
         )
     if contents.by != "xacro" or not stops_at_stderr:
         return contents
@@ -432,22 +448,22 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
     )
 
 
-def _split_command(command: str, at: Position) -> list[str]:
+def _split_command(command: str) -> list[str]:
     """Return the words of a command line, of which there is one. Raises EvaluationFails."""
     if glued := re.match(r"(xacro|cat)(?=/)", command):
         raise EvaluationFails(
-            f"a space is missing between {glued[1]} and the path: write '{glued[1]} '", at
+            f"a space is missing between {glued[1]} and the path: write '{glued[1]} '"
         )
     try:
         words = shlex.split(command)
     except ValueError:
-        raise EvaluationFails("the quotes in this command are not closed", at) from None
+        raise EvaluationFails("the quotes in this command are not closed") from None
     if not words:
-        raise EvaluationFails("this command is empty", at)
+        raise EvaluationFails("this command is empty")
     return words
 
 
-def check_xacro_words(words: Sequence[str], at: Position) -> None:
+def check_xacro_words(words: Sequence[str]) -> None:
     """Raise EvaluationFails for a wrong command of xacro.
 
     Such a command certainly has not one file, or an argument that is none.
@@ -455,32 +471,33 @@ def check_xacro_words(words: Sequence[str], at: Position) -> None:
     program = posixpath.basename(words[0]).removesuffix(".py") if words else ""
     if program != "xacro" or any(word.startswith("-") for word in words):
         return
-    _check_spaces(words[1:], at)
+    _check_spaces(words[1:])
     if any(PART_UNKNOWN in word for word in words):
         return
     files = [word for word in words[1:] if ":=" not in word]
     if not files:
-        raise EvaluationFails("xacro is given no file", at)
+        raise EvaluationFails("xacro is given no file")
     if len(files) > 1:
-        named = enumerated([*map(posixpath.basename, files)])
-        raise EvaluationFails(f"xacro takes one file, and is given {named}", at)
+        named = enumerated(map(posixpath.basename, files))
+        raise EvaluationFails(f"xacro takes one file, and is given {named}")
 
 
-def _check_spaces(words: Sequence[str], at: Position) -> None:
+def _check_spaces(words: Sequence[str]) -> None:
     """Raise EvaluationFails for a word that is several, because a space is missing."""
     for word in words:
         name, is_given, value = word.partition(":=")
         path = re.match(r"[^/\n]*+/.*\.(?:xacro|urdf)", name) if is_given else None
-        if path is not None:
-            before, after = posixpath.basename(path[0]), f"{name[path.end() :]}:="
-            raise EvaluationFails(f"a space is missing between {before} and {after}", at)
+        if path:
+            before = posixpath.basename(path[0])
+            after = f"{name[path.end() :]}:="
+            raise EvaluationFails(f"a space is missing between {before} and {after}")
         if ":=" in value:
-            raise EvaluationFails(f"a space is missing between the arguments in {word[:60]!r}", at)
+            raise EvaluationFails(f"a space is missing between the arguments in {word[:60]!r}")
 
 
 def printed_file(words: list[str]) -> Contents | None:
     """Return the contents of the one file that xacro or cat prints; None for any other command."""
-    program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
+    program = last_part(words[0]).removesuffix(".py") if words else ""
     file = _only_file(words[1:])
     if file is None or "-o" in words:
         return None
@@ -488,7 +505,7 @@ def printed_file(words: list[str]) -> Contents | None:
         return Contents(file, "cat")
     if program != "xacro":
         return None
-    arguments: list[tuple[str, str | None]] = []
+    arguments = []
     for word in words[1:]:
         name, is_given, text = word.partition(":=")
         if is_given:

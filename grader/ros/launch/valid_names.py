@@ -4,10 +4,10 @@ The rules are those of rmw/src/validate_node_name.c, rcl/src/rcl/validate_topic_
 validate_full_topic_name.c, which are asked before a name is remapped.
 """
 
-import re
+from grader.base.patterns import on_use
 
-_NODE_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-_REFUSED = re.compile(r"[^A-Za-z0-9_/~{}]")
+_NODE_NAME = on_use(r"[A-Za-z_][A-Za-z0-9_]*")
+_REFUSED = on_use(r"[^A-Za-z0-9_/~{}]")
 
 
 def is_node_name(name: str) -> bool:

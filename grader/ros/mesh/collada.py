@@ -18,7 +18,7 @@ from grader.ros.mesh.mesh_fault import (
     fan_corners,
     look_up_corners,
 )
-from grader.ros.xml.parsing import Element, XMLSyntaxError, parse_xml
+from grader.ros.xml.parsing import Element, Elements, XMLSyntaxError, parse_xml
 
 _MAX_NODES = 10_000  # that are visited: a node can be shown many times, also by itself
 # The kinds of primitives that are surfaces.
@@ -59,7 +59,7 @@ class _Scene:
 
     def __init__(self, root: Element) -> None:
         self._root = root
-        self._elements: dict[str, Element] = {}
+        self._elements: Elements = {}
         for element in root.iter("*"):
             self._elements.setdefault(element.get("id", ""), element)
         self._geometries: dict[Element, Any] = {}
@@ -126,7 +126,8 @@ class _Scene:
         if not vertices:
             return np.empty((0, 3, 3))
         offsets = [_whole(source.get("offset", "0")) for source in inputs]
-        stride, offset = max(offsets) + 1, _whole(vertices[0].get("offset", "0"))
+        stride = max(offsets) + 1
+        offset = _whole(vertices[0].get("offset", "0"))
         rows = []
         for element in surface.iterfind("{*}p"):
             numbers = _numbers(element, int)
@@ -148,9 +149,11 @@ class _Scene:
         source = self._named(positions.get("source"))
         values = _numbers(source.find("{*}float_array"), float)
         accessor = source.find("{*}technique_common/{*}accessor")
-        stride, start = 3, 0
+        stride = 3
+        start = 0
         if accessor is not None:
-            stride, start = _whole(accessor.get("stride", "3")), _whole(accessor.get("offset", "0"))
+            stride = _whole(accessor.get("stride", "3"))
+            start = _whole(accessor.get("offset", "0"))
         if stride < 3 or stride > max(3, len(values)):
             raise MeshFault("is broken: its positions do not have three coordinates")
         values = values[start:]
@@ -163,7 +166,8 @@ def _triangles(surface: Element, lengths: list[int]) -> Any:
 
     The primitive's lists of corners have these lengths.
     """
-    kind, total = _kind(surface), sum(lengths)
+    kind = _kind(surface)
+    total = sum(lengths)
     if kind == "triangles":
         if total % 3:
             raise MeshFault("is broken: the corners of its triangles are not complete")
@@ -207,7 +211,8 @@ def _transform(node: Element) -> Any:
 
 def _rotation(values: Any) -> Any:
     """Return the rotation about an axis, x y z, by an angle in degrees (Rodrigues' formula)."""
-    axis, angle = values[:3], np.radians(values[3])
+    axis = values[:3]
+    angle = np.radians(values[3])
     length = np.linalg.norm(axis)
     x, y, z = axis / length if length > 0.0 else axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -19,7 +19,9 @@ _MAX_INDEX = 2**31
 
 def read_obj(data: bytes) -> Any:
     """Return the corners of triangles, shape (n, 3, 3). Raises MeshFault."""
-    coordinates, corners, counts = array("d"), array("q"), array("q")
+    coordinates = array("d")
+    corners = array("q")
+    counts = array("q")
     triangles = 0
     for number, line in enumerate(_joined_lines(data), 1):
         words = line.split()

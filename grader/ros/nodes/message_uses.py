@@ -10,22 +10,36 @@ import ast
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import NamedTuple
 
+from grader.base.grouping import Strings
+from grader.base.records import Named
 from grader.base.source import Location, Source
+from grader.base.text import last_part
+from grader.ros.known.package_tables import python_table
 from grader.ros.nodes.node_facts import FieldUse, RclpyObject, TypeImport
 from grader.ros.python.bindings import names_bound
-from grader.ros.python.constants import dotted, last_name, make_order
+from grader.ros.python.constants import (
+    count_bound,
+    count_stored,
+    dotted,
+    last_name,
+    make_order,
+)
 from grader.ros.python.parse import (
     AnyFunction,
     Code,
     Position,
-    every_node,
+    caught_by,
+    end_position,
     location_in,
     make_position,
+    name_position,
+    own_parameters,
 )
 from grader.ros.python.values import SCALARS, QualifiedName, Scope, Value
 from grader.ros.python.walking import children, walk
+
+_ValueOf = Callable[[ast.expr, Scope], Value]
 
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 _KINDS = ("msg", "srv", "action")
@@ -43,24 +57,28 @@ _RETURNED = {
     _GET: "rclpy.parameter.Parameter",
     "self.declare_parameter": "rclpy.parameter.Parameter",
     "self.get_clock": "rclpy.clock.Clock",
+    "self.get_logger": "rclpy.impl.rcutils_logger.RcutilsLogger",
 }
-_NOW = {"rclpy.clock.Clock": "rclpy.time.Time"}
+_TIME = "rclpy.time.Time"
+_NOW = {"rclpy.clock.Clock": _TIME}
+# Objects whose attributes are known.
+_WITH_MEMBERS = frozenset({_TIME, *_RETURNED.values()}) - {*_NOW}
 _ORDERS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)  # == and != take any objects
 _OF_NUMBERS = ("abs", "round", "int", "float", "range", "self.create_timer")
-_LACKS = {"rclpy.parameter.Parameter": ".value", "rclpy.time.Time": ".to_msg()"}
+_LACKS = {"rclpy.parameter.Parameter": ".value", _TIME: ".to_msg()"}
 
 
-class _Typed(NamedTuple):
+class _Typed(Named):
     """A value: a field of what has a type, or this itself.
 
     The type has the name of its section: chat_msgs.srv.Ask.Request.
     """
 
     type: str
-    path: tuple[str, ...] = ()
+    path: Strings = ()
 
 
-class CodePart(NamedTuple):
+class CodePart(Named):
     """A function or method, or the module without these.
 
     It has its calls, its scope and the place of its class.
@@ -73,7 +91,9 @@ class CodePart(NamedTuple):
     of: Location | None = None
 
 
-_Evaluate = Callable[[ast.expr], Value]
+Evaluate = Callable[[ast.expr], Value]
+ClassesByLocation = Mapping[Location, ast.ClassDef]
+FunctionKey = tuple[Location | None, str]  # the class and the name of a function
 
 
 def _interface_name(value: Value) -> str | None:
@@ -91,7 +111,7 @@ def _interface_name(value: Value) -> str | None:
 
 def type_imports(tree: ast.Module, source: Source) -> Iterator[TypeImport]:
     """Yield the types that a file certainly imports: not in a try, nor under a condition."""
-    pending: list[ast.stmt] = [*tree.body]
+    pending = list(tree.body)
     while pending:
         statement = pending.pop()
         match statement:
@@ -107,7 +127,7 @@ def type_imports(tree: ast.Module, source: Source) -> Iterator[TypeImport]:
                 pending += body
 
 
-class _Callback(NamedTuple):
+class _Callback(Named):
     """Which arguments of a function are the type and the callback, and what that is given.
 
     The callback is given sections of the type.
@@ -117,7 +137,7 @@ class _Callback(NamedTuple):
     type_name: str
     callback_at: int
     callback_name: str
-    sections: tuple[str, ...]
+    sections: Strings
 
 
 _CALLBACKS = {
@@ -130,22 +150,23 @@ _CALLBACKS = {
 def field_uses(
     code: Code,
     parts: Sequence[CodePart],
-    value_of: Callable[[ast.expr, Scope], Value],
+    value_of: _ValueOf,
     node_classes: Collection[Location],
 ) -> Iterator[FieldUse]:
     """Yield the fields that the functions of a module use.
 
     `node_classes` are where its classes are that have the methods of rclpy's nodes.
     """
-    nodes = every_node(code.tree)
+    nodes = code.nodes
     stored = _count_bindings(nodes)
     given = _types_given(parts, nodes, value_of)
     functions = []
-    own_names = {f"self.{part.name}" for part in parts} | {f"self.{name}" for name in stored}
+    own_names = {*stored}.union(part.name for part in parts)
+    has_others = any(name.removeprefix("self.") in own_names for name in _RETURNED)
     for part in parts:
         evaluate = partial(_value_in, part.scope, value_of)
-        key = f"self.{part.name}" if part.of is not None else part.name
-        is_node = part.of in node_classes and own_names.isdisjoint(_RETURNED)
+        key = f"self.{part.name}" if part.of else part.name
+        is_node = part.of in node_classes and not has_others
         types = given.get((part.of, key), ())
         functions.append((part, _FunctionUses(part.node, evaluate, types, is_node=is_node)))
     shared: dict[Location | None, dict[str, _Typed]] = {None: {}}
@@ -160,33 +181,26 @@ def field_uses(
             yield use.placed(code.source)
 
 
-def _count_bindings(nodes: Iterable[ast.AST]) -> Counter[str]:
-    """Return how often names and attributes are bound, wherever it is."""
-    stored = Counter[str]()
-    for node in nodes:
-        match node:
-            case ast.Attribute(attr=name, ctx=ast.Store() | ast.Del()):
-                stored[name] += 1
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
-                stored[name] += 1
-    return stored
+def _count_bindings(nodes: Sequence[ast.AST]) -> Counter[str]:
+    """Return how often names, parameters and attributes are bound, wherever it is."""
+    return count_bound(nodes) + Counter(node.arg for node in nodes if isinstance(node, ast.arg))
 
 
-def _value_in(scope: Scope, value_of: Callable[[ast.expr, Scope], Value], node: ast.expr) -> Value:
+def _value_in(scope: Scope, value_of: _ValueOf, node: ast.expr) -> Value:
     return value_of(node, scope)
 
 
 def _types_given(
     parts: Sequence[CodePart],
     nodes: Sequence[ast.AST],
-    value_of: Callable[[ast.expr, Scope], Value],
-) -> dict[tuple[Location | None, str], tuple[str, ...]]:
+    value_of: _ValueOf,
+) -> dict[FunctionKey, Strings]:
     """Return what functions are called with that are named only where they become callbacks.
 
     The keys are the places of their classes and their names.
     """
     named = _count_uses(nodes)
-    types_by_name: dict[tuple[Location | None, str], list[tuple[str, ...]]] = {}
+    types_by_name: dict[FunctionKey, list[Strings]] = {}
     for part in parts:
         bound = _names_inside(part)
         for call in part.calls:
@@ -216,15 +230,13 @@ def _count_uses(nodes: Iterable[ast.AST]) -> Counter[str]:
     )
 
 
-def _typed_callback(
-    call: ast.Call, scope: Scope, value_of: Callable[[ast.expr, Scope], Value]
-) -> tuple[str, tuple[str, ...]] | None:
+def _typed_callback(call: ast.Call, scope: Scope, value_of: _ValueOf) -> tuple[str, Strings] | None:
     """Return the name of the callback that a call registers, and the types that it is given.
 
     There are no types where the type of the call is not known.
     """
     row = _CALLBACKS.get(last_name(call.func))
-    if row is None:
+    if not row:
         return None
     callback = given_argument(call, row.callback_at, row.callback_name)
     made = given_argument(call, row.type_at, row.type_name)
@@ -247,11 +259,11 @@ def given_argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
     return None
 
 
-class _PlacedUse(NamedTuple):
+class _PlacedUse(Named):
     """The use of a field, at the name of the field in a file that is given later."""
 
     type: str
-    path: tuple[str, ...]
+    path: Strings
     at: Position
     literal: tuple[Value, ...] = ()
     rclpy: tuple[str, Position] | None = None  # the type of an object of rclpy, and its end
@@ -260,8 +272,10 @@ class _PlacedUse(NamedTuple):
         instead = None
         if self.rclpy is not None:
             full, end = self.rclpy
-            name = full.rpartition(".")[2]
-            instead = RclpyObject(name, _LACKS[full], location_in(source, end))
+            name = last_part(full)
+            is_whole = not self.type.startswith("rclpy.") or self.path == ("value",)
+            lacks = _LACKS.get(full, "") if is_whole else ""
+            instead = RclpyObject(name, lacks, location_in(source, end))
         at = location_in(source, self.at)
         return FieldUse(self.type, self.path, at, self.literal, instead)
 
@@ -272,25 +286,22 @@ class _FunctionUses:
     def __init__(
         self,
         function: AnyFunction | ast.Module,
-        evaluate: _Evaluate,
+        evaluate: Evaluate,
         given: Sequence[str],
         *,
         is_node: bool,
     ) -> None:
         """`given` are the types of the arguments after self; `is_node`: self is a node of rclpy."""
-        self._evaluate, self._is_node = evaluate, is_node
+        self._evaluate = evaluate
+        self._is_node = is_node
         self._nodes = sorted(certain_nodes(function), key=make_order)
-        self._counts = Counter[str]()
+        self._counts = count_stored(walk(function))
         for node in walk(function):
             match node:
-                case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
-                    self._counts[name] += 1
-                case ast.Attribute(ctx=ast.Store() | ast.Del()):
-                    self._counts[dotted(node)] += 1
                 case ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)):
                     self._counts[name] += 1
                 case ast.Global(names=names) | ast.Nonlocal(names=names):
-                    self._counts.update([*names, *names])
+                    self._counts.update(names + names)
         self._types: dict[str, _Typed] = {}
         self._asked = {*_asked(self._nodes)}
         self._bind_arguments(function, given)
@@ -298,9 +309,7 @@ class _FunctionUses:
 
     def _bind_arguments(self, function: ast.AST, given: Sequence[str]) -> None:
         if isinstance(function, AnyFunction):
-            names = [node.arg for node in function.args.args]
-            names = names[1:] if names[:1] == ["self"] else names
-            for name, kind in zip(names, given, strict=False):
+            for name, kind in zip(own_parameters(function), given, strict=False):
                 if kind and self._counts[name] == 1 and name not in self._asked:
                     self._types[name] = _Typed(kind)
 
@@ -320,7 +329,7 @@ class _FunctionUses:
                     continue
             name = dotted(target)
             is_bound = name.count(".") < 2 and self._counts[name] == 1
-            if typed is not None and name and is_bound and name not in self._asked:
+            if typed and name and is_bound and name not in self._asked:
                 self._types[name] = typed
 
     def kept(self, *, is_module: bool) -> Iterator[tuple[str, _Typed]]:
@@ -338,8 +347,8 @@ class _FunctionUses:
     def _find_type(self, node: ast.expr) -> _Typed | None:
         """Return what an expression is; None where this is not certain."""
         path: list[str] = []
+        name = dotted(node)
         while len(path) < _MAX_PATH:
-            name = dotted(node)
             if name in self._types:
                 typed = self._types[name]
                 return typed._replace(path=(*typed.path, *reversed(path)))
@@ -347,9 +356,11 @@ class _FunctionUses:
                 case ast.Attribute(value=inner, attr=attribute):
                     path.append(attribute)
                     node = inner
+                    name = name.rpartition(".")[0]
                 case ast.Subscript(value=inner, slice=index) if not isinstance(index, ast.Slice):
                     path.append(ITEM)
                     node = inner
+                    name = dotted(inner)
                 case ast.Call(func=made):
                     kind = self._type_returned(made)
                     return _Typed(kind, tuple(reversed(path))) if kind is not None else None
@@ -364,12 +375,12 @@ class _FunctionUses:
             return _RETURNED[name]
         if isinstance(function, ast.Attribute) and function.attr == "now":
             owner = self._find_type(function.value)
-            return _NOW.get(owner.type) if owner is not None and not owner.path else None
+            return _NOW.get(owner.type) if owner and not owner.path else None
         return _interface_name(self._evaluate(function)) if name else None
 
     def uses(self) -> Iterator[_PlacedUse]:
         """Yield the fields that are used, each with the value that it is set to."""
-        values: dict[ast.AST, ast.expr] = {}
+        values = {}
         for node in self._nodes:
             match node:
                 case ast.Assign(targets=[ast.Attribute() as target], value=value):
@@ -378,13 +389,27 @@ class _FunctionUses:
                     yield from self._uses_of_attribute(node, values.get(node))
                 case ast.Call():
                     yield from self._uses_in_call(node)
-            for operand in _operands(node):
+            operands = _operands(node)
+            for operand in operands:
                 yield from self._uses_as_number(operand)
+            if len(operands) > 1:
+                yield from self._uses_with_time(operands)
+
+    def _uses_with_time(self, operands: Sequence[ast.expr]) -> Iterator[_PlacedUse]:
+        """Yield a field of a message or a number that is computed with a Time of rclpy."""
+        types = [self._find_type(operand) for operand in operands]
+        if _Typed(_TIME) not in types:
+            return
+        for operand, typed in zip(operands, types, strict=True):
+            is_field = typed is not None and bool(typed.path) and typed.type not in _LACKS
+            if is_field or type(getattr(operand, "value", None)) in (int, float):
+                at = make_position(operand)
+                yield _PlacedUse(_TIME, ("from_msg",), at, rclpy=(_TIME, at))
 
     def _uses_as_number(self, operand: ast.expr) -> Iterator[_PlacedUse]:
         """Yield the use of a parameter in place of its value, as the path of this."""
         typed = self._find_type(operand)
-        if typed is not None and typed.type == _RETURNED[_GET] and not typed.path:
+        if typed and typed.type == _RETURNED[_GET] and not typed.path:
             yield self._with_value(
                 _PlacedUse(typed.type, ("value",), make_position(operand)), operand
             )
@@ -394,13 +419,21 @@ class _FunctionUses:
     ) -> Iterator[_PlacedUse]:
         """Yield the use of a field, or of a constant, that an attribute is."""
         typed = self._find_type(node.value)
-        if typed is None and node.attr.isupper() and dotted(node.value):
+        if typed and typed.type in _WITH_MEMBERS and not typed.path:
+            yield from self._unknown_member(node, typed.type)
+        if not typed and node.attr.isupper() and dotted(node.value):
             kind = _interface_name(self._evaluate(node.value))  # a constant of a type
             typed = _Typed(kind) if kind is not None else None
-        if typed is not None and not typed.type.startswith("rclpy."):
-            end = (node.end_col_offset or 0) - len(node.attr) + 1
-            at = Position(node.end_lineno or node.lineno, end)
-            yield self._with_value(_PlacedUse(typed.type, (*typed.path, node.attr), at), value)
+        if typed and not typed.type.startswith("rclpy."):
+            path = (*typed.path, node.attr)
+            yield self._with_value(_PlacedUse(typed.type, path, name_position(node)), value)
+
+    def _unknown_member(self, node: ast.Attribute, kind: str) -> Iterator[_PlacedUse]:
+        """Yield the use of an attribute that an object of rclpy does not have."""
+        known = python_table().members[last_part(kind)]
+        if isinstance(node.ctx, ast.Load) and node.attr not in known:
+            rclpy = (kind, end_position(node))
+            yield _PlacedUse(kind, (node.attr,), name_position(node), rclpy=rclpy)
 
     def _uses_in_call(self, call: ast.Call) -> Iterator[_PlacedUse]:
         """Yield the fields that the keywords of a constructor set."""
@@ -416,20 +449,19 @@ class _FunctionUses:
 
     def _with_value(self, use: _PlacedUse, node: ast.expr | None) -> _PlacedUse:
         """Return the use of a field with the value that it is set to, as far as it is known."""
-        typed = self._find_type(node) if node is not None else None
-        if node is None or (typed is not None and typed.type not in _LACKS):
+        typed = self._find_type(node) if node else None
+        if not node or (typed and typed.type not in _LACKS):
             return use
-        if typed is None:
+        if not typed:
             return use._replace(literal=self._literal(node))
-        end = Position(node.end_lineno or node.lineno, (node.end_col_offset or 0) + 1)
-        return use if typed.path else use._replace(rclpy=(typed.type, end))
+        return use if typed.path else use._replace(rclpy=(typed.type, end_position(node)))
 
     def _literal(self, node: ast.expr) -> tuple[Value, ...]:
         value = self._evaluate(node)
         if value is None or isinstance(value, SCALARS):
             return (value,)
         if isinstance(value, list | tuple) and len(value) <= _MAX_ITEMS:
-            return ([*value],)
+            return (list(value),)
         return ()
 
 
@@ -486,7 +518,6 @@ def suppresses(items: Sequence[ast.withitem]) -> bool:
 def _catches(handlers: Sequence[ast.ExceptHandler]) -> bool:
     """Return whether a handler may catch that a field or type does not exist."""
     for handler in handlers:
-        kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-        if any(kind is None or dotted(kind).rpartition(".")[2] in _CAUGHT for kind in kinds):
+        if any(not kind or last_part(dotted(kind)) in _CAUGHT for kind in caught_by(handler)):
             return True
     return False

@@ -1,6 +1,6 @@
 """The pose of a transform of which code sets each number."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from typing import Any, TypeVar
 
 from grader.base.transforms import Transform, rotation_from_quaternion
@@ -12,8 +12,8 @@ _ROTATION = (
     "transform.rotation.z",
     "transform.rotation.w",
 )
-POSE_FIELDS = (*_PLACE, *_ROTATION)
-_IDENTITY: Mapping[str, float] = {"transform.rotation.w": 1.0}  # what a new message has
+POSE_FIELDS = _PLACE + _ROTATION
+_IDENTITY = {"transform.rotation.w": 1.0}  # what a new message has
 _Node = TypeVar("_Node")
 
 

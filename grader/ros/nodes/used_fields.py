@@ -1,9 +1,9 @@
 """The fields that code uses of messages, services and actions: which type should have each."""
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 from grader.base.names import closest, near
+from grader.base.records import Named
 from grader.ros.interfaces.interface_types import (
     FieldType,
     Interface,
@@ -18,7 +18,7 @@ _GOAL_HANDLE = "GoalHandle"
 FindInterface = Callable[[str, str], Interface | None]  # by its package and name: msg.Twist
 
 
-class UsedField(NamedTuple):
+class UsedField(Named):
     """The last name of a path of fields, and the section of a type that should have it."""
 
     owner: str  # as ROS 2 writes it: geometry_msgs/msg/Twist
@@ -33,12 +33,13 @@ class UsedField(NamedTuple):
     @property
     def names(self) -> Sequence[str]:
         """The names that there are in its place."""
-        return sorted(self.section.constants) if self.name.isupper() else [*self.section.fields]
+        return sorted(self.section.constants) if self.name.isupper() else list(self.section.fields)
 
     @property
     def is_of_python(self) -> bool:
         """Whether the class that rosidl generates has an attribute that is no field."""
-        constants, name = self.section.constants, self.name
+        constants = self.section.constants
+        name = self.name
         may_be_constant = MORE_CONSTANTS in constants and name.isupper()
         is_known = name in constants or name in _OF_PYTHON or may_be_constant
         return is_known or name.startswith("_") or name.endswith("__DEFAULT")
@@ -54,7 +55,7 @@ class UsedField(NamedTuple):
         for field in self.section.fields.values():
             if field.type.package and not field.type.is_list:
                 part = _section_of_type(field.type, find)
-                if part is not None and self.name in part.fields:
+                if part and self.name in part.fields:
                     inside.append(f"{field.name}.{self.name}")
         if len(inside) == 1:
             return inside[0]
@@ -65,13 +66,14 @@ class UsedField(NamedTuple):
 def resolve_field(use: FieldUse, find: FindInterface) -> UsedField | None:
     """Return the field that code uses; None where it is not known what should have it."""
     package, kind, name, *sections = use.type.split(".")
-    section_name, path = "".join(sections), [*use.path]
+    section_name = "".join(sections)
+    path = list(use.path)
     if section_name == _GOAL_HANDLE:
         if path.pop(0) != "request" or not path:
             return None
         section_name = "Goal"
     interface = find(package, f"{kind}.{name}")
-    section = interface.section(section_name) if interface is not None else None
+    section = interface.section(section_name) if interface else None
     owner = (
         f"{package}/{kind}/{name}.{section_name}" if section_name else f"{package}/{kind}/{name}"
     )
@@ -80,7 +82,7 @@ def resolve_field(use: FieldUse, find: FindInterface) -> UsedField | None:
         if not path:
             return UsedField(owner, section, attribute)
         field = section.fields.get(attribute)
-        if field is None or (field.type.is_list and path.pop(0) != ITEM) or not path:
+        if not field or (field.type.is_list and path.pop(0) != ITEM) or not path:
             return None
         section = _section_of_type(field.type, find)
         owner = f"{field.type.package}/msg/{field.type.name}"
@@ -90,4 +92,4 @@ def resolve_field(use: FieldUse, find: FindInterface) -> UsedField | None:
 def _section_of_type(kind: FieldType, find: FindInterface) -> InterfaceSection | None:
     """Return the fields of the message that a field has, or that its items are."""
     interface = find(kind.package, f"msg.{kind.name}")
-    return interface.section("") if interface is not None else None
+    return interface.section("") if interface else None

@@ -2,10 +2,12 @@
 
 import posixpath
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator
 
+from grader.base.patterns import on_use
 from grader.base.problems import Problem
 from grader.ros.installation import package_problems as kinds
+from grader.ros.installation.cmake.cmake_values import reachable_packages
 from grader.ros.installation.installation import CmakeTarget, Installation
 from grader.ros.known.cmake_words import cmake_words
 from grader.ros.package.package import Package
@@ -14,18 +16,16 @@ _SOURCES = (".cpp", ".cc", ".cxx")
 _INTERFACES = (".msg", ".srv", ".action")
 _MAX_BYTES = 256 * 1024
 _MAX_FILES = 50
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
-_PROGRAM = re.compile(
-    r"\bint\s+main\s*\(|^[^\S\n]*+RCLCPP_COMPONENTS_REGISTER_NODE\b", re.MULTILINE
-)
-_COMMENT_OF_CMAKE = re.compile(r"#\[=*+\[.*?(?:\]=*+\]|\Z)|#[^\n]*", re.DOTALL)
-_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[\"<](\w+)/", re.MULTILINE)
+_COMMENT = on_use(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+_PROGRAM = on_use(r"\bint\s+main\s*\(|^[^\S\n]*+RCLCPP_COMPONENTS_REGISTER_NODE\b", re.MULTILINE)
+_COMMENT_OF_CMAKE = on_use(r"#\[=*+\[.*?(?:\]=*+\]|\Z)|#[^\n]*", re.DOTALL)
+_INCLUDE = on_use(r"^[ \t]*#[ \t]*include[ \t]*[\"<](\w+)/", re.MULTILINE)
 # Other ways to find headers: of all packages, or by their folders.
-_OTHER_WAYS = re.compile(
+_OTHER_WAYS = on_use(
     r"ament_auto|_INCLUDE_DIR|(?<!target_)link_libraries\(|target_link_libraries\(\s*\$"
 )
-_LINKED = re.compile(r"target_link_libraries\(\s*+([^\s()]++)")
-_OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|_test\.")
+_LINKED = on_use(r"target_link_libraries\(\s*+([^\s()]++)")
+_OF_TESTS = on_use(r"(^|/)tests?/|(^|/|_)test_|_test\.")
 
 
 def cmake_problems(package: Package, setup: Installation) -> Iterator[Problem]:
@@ -38,7 +38,7 @@ def cmake_problems(package: Package, setup: Installation) -> Iterator[Problem]:
     for unclosed in setup.unclosed:
         message = f"{unclosed.message}, so CMake takes it for text"
         yield Problem(kinds.UNCLOSED, message, setup.location(unclosed.at))
-    if setup.doubt is not None or setup.stops:
+    if setup.doubt or setup.stops:
         return
     for target in setup.targets:
         if target.is_certain:
@@ -92,9 +92,9 @@ def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> I
     for path in target.sources[:_MAX_FILES]:
         for name in _INCLUDE.findall(_read_text(package, path)):
             included.setdefault(name, path)
-    others: set[str] = set()
+    others = set()
     if {*target.packages} <= exports.keys():
-        reached = _reachable_packages(target.packages, exports)
+        reached = reachable_packages(target.packages)
         others |= (exports.keys() & included.keys()) - reached - {package.name}
     if not any(package.find(name) for name in target.packages):
         # No package of ROS 2 exports one of the workspace.
@@ -112,17 +112,6 @@ def _is_of_interfaces(package: Package, name: str, known: Collection[str]) -> bo
     """Return whether a package beside another one generates headers of messages."""
     beside = package.find(name) if name not in known and name != package.name else None
     return beside is not None and any(path.endswith(_INTERFACES) for path in beside.tree.files)
-
-
-def _reachable_packages(packages: Iterable[str], exports: Mapping[str, str]) -> set[str]:
-    """Return packages with those that they export, directly or not."""
-    pending, reached = [*packages], set[str]()
-    while pending:
-        name = pending.pop()
-        if name not in reached:
-            reached.add(name)
-            pending += exports.get(name, "").split()
-    return reached
 
 
 def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:

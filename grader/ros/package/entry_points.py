@@ -7,14 +7,14 @@ import ast
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from posixpath import basename
 
+from grader.base.grouping import group_values, only_one
 from grader.base.names import closest, near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
-from grader.base.text import (
-    MAX_NAMED,
-    enumerated,
-)
+from grader.base.text import MAX_NAMED, enumerated, first_part, last_part
 from grader.ros.known.python_names import MODULES, python_names
 from grader.ros.known.released import is_released
 from grader.ros.known.rosdep_words import rosdep_words
@@ -30,22 +30,22 @@ from grader.ros.python.parse import (
 )
 from grader.ros.python.walking import walk
 
-_ENTRY = re.compile(
+_ENTRY = on_use(
     r"\s*([^=\s]+)\s*=\s*(\w+(?:\.\w+)*)\s*(?::\s*(\w+)(?:\.\w+)*\s*)?(?:\[.*)?", re.ASCII
 )
 
 
-_WRITTEN_NAME = re.compile(r"""(?<=['"])[ \t]*([^'"=\s]+)[ \t]*=""")
+_WRITTEN_NAME = on_use(r"""(?<=['"])[ \t]*([^'"=\s]+)[ \t]*=""")
 
 
 _MAIN = "main"
 # Arguments of setup() by which it installs modules that packages does not name.
-_OTHER_MODULES = re.compile(r"package_dir|py_modules|package_data|['\"]lib\b|site-packages")
-_NAMES_PACKAGES = re.compile(r"\bpackages\s*+=")
-_CHANGES_PATH = re.compile(r"\bsys\.(?:path|modules)\b|\baddsitedir\b")
+_OTHER_MODULES = on_use(r"package_dir|py_modules|package_data|['\"]lib\b|site-packages")
+_NAMES_PACKAGES = on_use(r"\bpackages\s*+=")
+_CHANGES_PATH = on_use(r"\bsys\.(?:path|modules)\b|\baddsitedir\b")
 
 
-class _EntryPoint(NamedTuple):
+class _EntryPoint(Named):
     """A program of console_scripts: `average_filter = sensor_hub.average_filter:main`."""
 
     name: str
@@ -54,7 +54,7 @@ class _EntryPoint(NamedTuple):
     location: Location
 
 
-class _EntryFault(NamedTuple):
+class _EntryFault(Named):
     """Why a program certainly does not start, and where setup.py names it.
 
     It has the word there that may mean another one, which is sure for nearly the same name, or the
@@ -76,14 +76,14 @@ def entry_points(package: Package) -> Sequence[_EntryPoint]:
     These are those of console_scripts in setup.py that are written as texts.
     """
     setup = package.installation
-    scripts = setup.console_scripts if setup is not None else None
+    scripts = setup.console_scripts if setup else None
     if not isinstance(scripts, list | tuple):
         return []
     entries = []
     places = _places_of_names(package)
     for script in scripts:
         parts = _ENTRY.fullmatch(script) if isinstance(script, str) else None
-        if parts is not None:
+        if parts:
             name, module, function = parts.groups()
             location = _locate_name(package, name, places)
             entries.append(_EntryPoint(name, module, function or "", location))
@@ -92,8 +92,9 @@ def entry_points(package: Package) -> Sequence[_EntryPoint]:
 
 def _places_of_names(package: Package) -> dict[str, int]:
     """Return where setup.py writes the beginnings of entry points."""
-    setup, places = package.installation, dict[str, int]()
-    for written in _WRITTEN_NAME.finditer(setup.source.text if setup is not None else ""):
+    setup = package.installation
+    places = dict[str, int]()
+    for written in _WRITTEN_NAME.finditer(setup.source.text if setup else ""):
         places.setdefault(written[1], written.start())
     return places
 
@@ -104,7 +105,7 @@ def _locate_name(package: Package, name: str, places: Mapping[str, int]) -> Loca
     Returns where it calls setup() if the text is computed.
     """
     setup = package.installation
-    assert setup is not None
+    assert setup
     if name in places:
         return setup.source.at(places[name])
     return setup.location(setup.called_at)
@@ -113,7 +114,7 @@ def _locate_name(package: Package, name: str, places: Mapping[str, int]) -> Loca
 def entry_as_meant(package: Package, entry: _EntryPoint) -> _EntryPoint:
     """Return an entry point, or the one that is meant if it surely names no function."""
     fault = entry_fault(package, entry.name)
-    return fault.entry if fault is not None else entry
+    return fault.entry if fault else entry
 
 
 def certain_fault(package: Package, nodes: Collection[StartedNode]) -> _EntryFault | None:
@@ -121,7 +122,7 @@ def certain_fault(package: Package, nodes: Collection[StartedNode]) -> _EntryFau
     faults = []
     for node in nodes:
         owner = package.find(node.package)
-        faults.append(entry_fault(owner, node.executable) if owner is not None else None)
+        faults.append(entry_fault(owner, node.executable) if owner else None)
     if None in faults:
         return None
     return next(iter(faults), None)
@@ -133,8 +134,9 @@ def entry_fault(package: Package, name: str) -> _EntryFault | None:
     Its module or the function in it is not there. Modules of other packages are not known, nor is
     what a module does to its own names: a star import, `exec`, `globals()`.
     """
-    setup, named = package.installation, _entries_by_name(package).get(name, ())
-    if setup is None or len(named) != 1 or package.tree.links or setup.unknown:
+    setup = package.installation
+    named = _entries_by_name(package).get(name, ())
+    if not setup or len(named) != 1 or package.tree.links or setup.unknown:
         return None
     [entry] = named
     path = module_path(package, entry.module)
@@ -152,14 +154,14 @@ def _missing_function(package: Package, entry: _EntryPoint, path: str) -> _Entry
         return None
     if not entry.function:
         return _module_alone(entry, names)
-    known: list[str] = []
-    functions: list[str] = []
+    known = []
+    functions = []
     for node in code.tree.body if code else ():
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
             known.append(node.name)
         if isinstance(node, ast.FunctionDef):
             functions.append(node.name)
-    only = functions[0] if len(functions) == 1 else ""
+    only = only_one(functions) or ""
     fault = _fault(entry, f"{path} has no {entry.function!r}", entry.function, known, only)
     return fault._replace(entry=entry._replace(function=fault.meant or entry.function))
 
@@ -175,8 +177,9 @@ def _module_alone(entry: _EntryPoint, names: Collection[str]) -> _EntryFault | N
 
 def _not_installed(package: Package, entry: _EntryPoint, path: str) -> _EntryFault | None:
     """Return that setup.py does not install the package of Python with an entry point's module."""
-    setup, home = package.installation, path.rpartition("/")[0].replace("/", ".")
-    if setup is None or setup.unread or package.is_cmake or home in ("", *setup.packages):
+    setup = package.installation
+    home = path.rpartition("/")[0].replace("/", ".")
+    if not setup or setup.unread or package.is_cmake or home in ("", *setup.packages):
         return None
     text = setup.source.text
     if not _NAMES_PACKAGES.search(text) or _OTHER_MODULES.search(text):
@@ -191,29 +194,29 @@ def _not_installed(package: Package, entry: _EntryPoint, path: str) -> _EntryFau
 def _names_of_module(package: Package, path: str) -> tuple[Code | None, frozenset[str] | None]:
     """Return a parsed module of a package, and the names that it may bind."""
     code = read_module(package, path)
-    return code, _certain_names(code) if code is not None else None
+    return code, _certain_names(code) if code else None
 
 
 @lru_cache(maxsize=4)
 def _entries_by_name(package: Package) -> Mapping[str, Sequence[_EntryPoint]]:
-    entries: dict[str, list[_EntryPoint]] = {}
-    for entry in entry_points(package):
-        entries.setdefault(entry.name, []).append(entry)
-    return entries
+    return group_values((entry.name, entry) for entry in entry_points(package))
 
 
 def read_module(package: Package, path: str) -> Code | None:
     """Return a parsed Python file of a package; None for one that is not read."""
-    data = package.tree.read(path, PYTHON_LIMIT)
-    code = parse(data, package.path(path), package.releases) if data is not None else None
+    code = _parse_module(package, path)
     return code if isinstance(code, Code) else None
 
 
 def unreadable_module(package: Package, path: str) -> SyntaxFault | None:
     """Return why Python cannot read a file of a package, certainly or in the version that runs."""
-    data = package.tree.read(path, PYTHON_LIMIT)
-    fault = parse(data, package.path(path), package.releases) if data is not None else None
+    fault = _parse_module(package, path)
     return fault if isinstance(fault, SyntaxFault) else None
+
+
+def _parse_module(package: Package, path: str) -> Code | SyntaxFault | None:
+    data = package.tree.read(path, PYTHON_LIMIT)
+    return parse(data, package.path(path), package.releases) if data is not None else None
 
 
 def module_path(package: Package, module: str) -> str | None:
@@ -224,7 +227,7 @@ def module_path(package: Package, module: str) -> str | None:
     )
 
 
-class _MissingModule(NamedTuple):
+class _MissingModule(Named):
     """A module of a package that a node imports and no build installs."""
 
     module: str  # as it is imported, with the name of what is imported from it
@@ -239,7 +242,7 @@ def modules_not_installed(package: Package) -> Iterator[_MissingModule]:
     Other modules may be those of other packages.
     """
     setup = package.installation
-    if setup is None or package.is_cmake or setup.unread or not setup.packages:
+    if not setup or package.is_cmake or setup.unread or not setup.packages:
         return
     for path, code in _modules_of_entries(package):
         for module, statement in _imported_modules(code, path.rpartition("/")[0]):
@@ -254,7 +257,7 @@ def _modules_of_entries(package: Package) -> Iterator[tuple[str, Code]]:
     """Yield the modules that entry points name, each with its path."""
     for path in dict.fromkeys(module_path(package, each.module) for each in entry_points(package)):
         code = read_module(package, path) if path is not None else None
-        if path is not None and code is not None:
+        if path is not None and code:
             yield path, code
 
 
@@ -263,16 +266,16 @@ def modules_beside(package: Package) -> Iterator[_MissingModule]:
 
     An installed program does not find them there. Other packages may have a module of such a name.
     """
-    if package.installation is None or package.is_cmake or package.installation.unread:
+    if not package.installation or package.is_cmake or package.installation.unread:
         return
     for path, code in _modules_of_entries(package):
         folder = path.rpartition("/")[0]
         around = read_module(package, f"{folder}/__init__.py")
-        texts = [each.source.text for each in (code, around) if each is not None]
+        texts = [each.source.text for each in (code, around) if each]
         if not folder or any(map(_CHANGES_PATH.search, texts)):
             continue
         for module, statement in _imported_modules(code, ""):
-            top = module.partition(".")[0]
+            top = first_part(module)
             if getattr(statement, "level", 0) or f"{folder}/{top}.py" == path:
                 continue
             if _is_only_beside(package, folder, top):
@@ -289,11 +292,11 @@ def _is_only_beside(package: Package, folder: str, module: str) -> bool:
 def _may_be_elsewhere(package: Package, module: str) -> bool:
     """Return whether something installs a module of this name that is in no package of Python."""
     setup = package.installation
-    if setup is None or _OTHER_MODULES.search(setup.source.text):
+    if not setup or _OTHER_MODULES.search(setup.source.text):
         return True
     if module in setup.packages or f"{module}.py" in package.tree.files:
         return True
-    if package.find(module) is not None or package.depends_on(module) or is_released(module):
+    if package.find(module) or package.depends_on(module) or is_released(module):
         return True
     return module in python_names(MODULES, package.releases) or module in rosdep_words().modules
 
@@ -306,7 +309,7 @@ def _imported_modules(code: Code, folder: str) -> Iterator[tuple[str, ast.stmt]]
                 yield name.name, statement
         elif isinstance(statement, ast.ImportFrom):
             parts = folder.split("/")[: 1 - statement.level or None] if statement.level else []
-            base = [*parts, *(statement.module or "").split(".")]
+            base = parts + (statement.module or "").split(".")
             for name in statement.names:
                 yield ".".join(filter(None, [*base, name.name])), statement
 
@@ -325,16 +328,17 @@ def _lacks_module(package: Package, module: str) -> bool:
 
     Then its parent packages are here, and none of them has it.
     """
-    top, stem = module.partition(".")[0], module.replace(".", "/")
+    top = first_part(module)
+    stem = module.replace(".", "/")
     tree = package.tree
     paths = dict.fromkeys((*tree.files, *tree.folders, *tree.unseen))
     homes = []
     for path in paths:
-        if path.rpartition("/")[2] == top and not path.startswith("resource/"):
+        if basename(path) == top and not path.startswith("resource/"):
             homes.append(path)
     if not homes:  # no other package of ROS 2 installs a Python package of this name
         single = (f"{top}.py", f"{top}.so")
-        is_single = any(path.rpartition("/")[2].startswith(single) for path in paths)
+        is_single = any(basename(path).startswith(single) for path in paths)
         return top == package.name and not is_single
     module_or_folder = (f"{stem}.", f"{stem}/")
     if homes != [top] or any(f"{path}/".startswith(module_or_folder) for path in paths):
@@ -347,19 +351,20 @@ def _are_names_certain(package: Package, stem: str) -> bool:
     for path in package.tree.files:
         if path.endswith("/__init__.py") and stem.startswith(path.removesuffix("__init__.py")):
             code = read_module(package, path)
-            if code is None or _certain_names(code) is None:
+            if not code or _certain_names(code) is None:
                 return False
     return True
 
 
 def _without_package(package: Package, entry: _EntryPoint) -> _EntryFault | None:
     """Return that an entry point names a module of a package of Python without this package."""
-    setup, module = package.installation, entry.module
-    if setup is None or "." in module or _may_be_elsewhere(package, module):
+    setup = package.installation
+    module = entry.module
+    if not setup or "." in module or _may_be_elsewhere(package, module):
         return None
     for top in setup.packages:
         path = f"{top.replace('.', '/')}/{module}.py"
-        if path in package.tree.files and _missing_function(package, entry, path) is None:
+        if path in package.tree.files and not _missing_function(package, entry, path):
             meant = f"{top}.{module}"
             message = f"there is no module {module}; did you mean {meant!r}?"
             named = entry._replace(module=meant)
@@ -372,9 +377,10 @@ def _misspelt_package(package: Package, entry: _EntryPoint) -> _EntryFault | Non
 
     It is like one that it installs. Returns None where another package may have it.
     """
-    setup, top = package.installation, entry.module.partition(".")[0]
-    names = setup.packages if setup is not None else ()
-    installed = {name.partition(".")[0] for name in names}
+    setup = package.installation
+    top = first_part(entry.module)
+    names = setup.packages if setup else ()
+    installed = {first_part(name) for name in names}
     meant = near(top, installed)
     paths = (*package.tree.files, *package.tree.folders, *package.tree.unseen)
     is_there = any(top in path.removesuffix(".py").split("/") for path in paths)
@@ -394,7 +400,7 @@ def _missing_module(package: Package, entry: _EntryPoint) -> _EntryFault:
         and not path.endswith("__init__.py")
     ]
     same_name = entry.name if entry.name in others else ""
-    written = entry.module.rpartition(".")[2]
+    written = last_part(entry.module)
     message = f"there is no module {entry.module}"
     return _with_module(_fault(entry, message, written, others, same_name), -1)
 

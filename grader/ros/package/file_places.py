@@ -1,10 +1,11 @@
 """Where launch files look for files, and whether a build installs them there."""
 
-import posixpath
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from posixpath import basename, join, normpath
+from typing import TYPE_CHECKING, Literal
 
 from grader.base.errors import InputError, MissingElement
 from grader.base.names import closest, is_misspelling
+from grader.base.records import Named
 from grader.base.source import Location, Source
 from grader.base.text import enumerated
 from grader.files.reading import URDF_LIMIT
@@ -41,9 +42,10 @@ _ENDINGS = {
     "include": (".py", ".xml", ".launch", ".yaml", ".yml"),
     "read": ("",),
 }
+DROPS_FOLDERS = "joining a path that begins with / drops the folders before it"
 
 
-class FilePlace(NamedTuple):
+class FilePlace(Named):
     """Where a launch file looks for a file, or why it is not there.
 
     The state is `missing` if a build does not install it.
@@ -91,7 +93,7 @@ class FilePlace(NamedTuple):
         No package of this name is on the machine.
         """
         owner, _ = share_parts(self.file.path or "")
-        return self.state == "wrong" and bool(owner) and package.find(owner) is None
+        return self.state == "wrong" and bool(owner) and not package.find(owner)
 
     def with_parts(self, package: Package) -> "FilePlace":
         """Return the place of a robot's file, or where something that it needs is not installed."""
@@ -102,7 +104,7 @@ class FilePlace(NamedTuple):
             return self
         mistake = "the robot needs a file that a build does not install"
         detail = (
-            f"{posixpath.basename(self.text)} needs {enumerated(missing)}, which a build does not "
+            f"{basename(self.text)} needs {enumerated(missing)}, which a build does not "
             "install there"
         )
         return FilePlace(self.file, "wrong", detail, mistake, "needs")
@@ -125,11 +127,9 @@ def find_places(
     Raises MissingElement for one that a build does not install.
     """
     places = [_find_place(package, file, built=built) for file in launch.named(*purposes)]
-    present = {
-        posixpath.basename(path) for other in package.packages.values() for path in other.tree.files
-    }
+    present = {basename(path) for other in package.packages.values() for path in other.tree.files}
     for place in places:
-        is_needed = built or posixpath.basename(place.file.path or "") not in present
+        is_needed = built or basename(place.file.path or "") not in present
         if (
             place.state == "missing"
             and is_needed
@@ -144,19 +144,23 @@ def _missing_file(package: Package, place: FilePlace) -> MissingElement:
 
     It has the kinds and names that the checks of packages use.
     """
-    setup, purpose, name = package.installation, place.file.purpose, package.folder
-    if setup is not None and setup.misspelt is not None:
+    setup = package.installation
+    purpose = place.file.purpose
+    name = package.folder
+    if setup and setup.misspelt is not None:
         return package.without_data_files(setup.misspelt.message)
-    kind, looked_for = f"installed {purpose}", posixpath.basename(place.file.path or "")
-    if setup is None or setup.fault is not None:
+    kind = f"installed {purpose}"
+    looked_for = basename(place.file.path or "")
+    if not setup or setup.fault:
         kind = "setup.py"
     elif not setup.is_called:
         kind = "call of setup"
     elif not any(
-        path.lower().endswith(_ENDINGS[purpose]) or posixpath.basename(path) == looked_for
+        path.lower().endswith(_ENDINGS[purpose]) or basename(path) == looked_for
         for path in package.tree.files
     ):
-        kind, name = f"{_WORDS[purpose]} in the package", ""
+        kind = f"{_WORDS[purpose]} in the package"
+        name = ""
     cause = "" if kind == f"installed {purpose}" else "missing"
     return MissingElement(kind, name, message=place.text, location=place.file.location, cause=cause)
 
@@ -173,14 +177,15 @@ def _find_place(package: Package, file: "NamedFile", *, built: bool) -> FilePlac
             "PathJoinSubstitution([...])"
         )
         return FilePlace(file, "wrong", reason, cause="given")
-    what, path = _WORDS[file.purpose], posixpath.normpath(file.path)
+    what = _WORDS[file.purpose]
+    path = normpath(file.path)
     owner, rest = share_parts(path)
     if owner:
         other = package.find(owner)
-        if other is None:
+        if not other:
             return _place_in_unknown(package, owner, rest, file)
         place = _place_in_package(other, f"share/{owner}/{rest}", file)
-        is_there = posixpath.basename(rest) in map(posixpath.basename, other.tree.files)
+        is_there = basename(rest) in map(basename, other.tree.files)
         return (
             place._replace(state="missing")
             if place.state == "unknown" and is_there and not built
@@ -207,10 +212,8 @@ def _fault_of_path(package: Package, path: str) -> str:
         if shown.startswith("~"):
             return f"{shown}, but nothing replaces ~ by the home folder"
         return f"{shown}, relative to the folder that ros2 launch is started from"
-    if not path.startswith((PREFIX, ROS)) and posixpath.basename(path) in map(
-        posixpath.basename, package.tree.files
-    ):
-        return f"{path}: joining a path that begins with / drops the folders before it"
+    if not path.startswith((PREFIX, ROS)) and basename(path) in map(basename, package.tree.files):
+        return f"{path}: {DROPS_FOLDERS}"
     return ""
 
 
@@ -242,12 +245,9 @@ def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
     # A path may lack a slash after the package's name: get_package_share_directory(...) +
     # 'my_robot.urdf'.
     more = owner.removeprefix(package.name)
-    if rest:
-        is_known = more in package.tree.folders
-    else:
-        is_known = more in map(posixpath.basename, package.tree.files)
+    is_known = more in package.tree.folders if rest else more in map(basename, package.tree.files)
     if owner.startswith(package.name) and is_known:
-        path = posixpath.join("share", owner, rest).rstrip("/")
+        path = join("share", owner, rest).rstrip("/")
         return (
             f"the launch file looks for the {what} at {path}: a slash is missing after "
             f"{package.name!r}"
@@ -262,7 +262,9 @@ def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
 
 def _place_in_package(owner: Package, target: str, file: "NamedFile") -> FilePlace:
     """Return whether a build of a package installs a file at the path where it is looked for."""
-    lookup, setup, what = look_up(owner, target), owner.installation, _WORDS[file.purpose]
+    lookup = look_up(owner, target)
+    setup = owner.installation
+    what = _WORDS[file.purpose]
     match lookup.state:
         case "unknown":
             return FilePlace(
@@ -270,7 +272,7 @@ def _place_in_package(owner: Package, target: str, file: "NamedFile") -> FilePla
             )
         case "no build":
             return FilePlace(file, "missing", f"a build installs no {what}: {lookup.text}")
-        case "installed" if setup is not None and setup.misspelt is not None:
+        case "installed" if setup and setup.misspelt is not None:
             return FilePlace(
                 file, "missing", f"a build does not install the {what}: {setup.misspelt.message}"
             )
@@ -293,7 +295,7 @@ def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> FilePlace |
             f"reading the {_WORDS[file.purpose]} stops the launch file with a "
             "UnicodeDecodeError: it is not UTF-8"
         )
-        detail = f" (line {line} of {posixpath.basename(path)}); save it as UTF-8"
+        detail = f" (line {line} of {basename(path)}); save it as UTF-8"
         return FilePlace(file, "wrong", mistake + detail, mistake, "encoding")
     except InputError:
         pass  # other criteria report it
@@ -303,8 +305,8 @@ def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> FilePlace |
 def _installing_line(owner: Package, target: str) -> str:
     """Return the line of the build file that installs a file, for the end of a sentence."""
     setup = owner.installation
-    for copy in setup.copies if setup is not None else ():
-        if copy.target == target and setup is not None:
+    for copy in setup.copies if setup else ():
+        if copy.target == target and setup:
             return f" ({setup.file}:{copy.at.line})"
     return ""
 
@@ -321,8 +323,8 @@ def _place_not_there(owner: Package, target: str, lookup: Lookup, file: "NamedFi
         return FilePlace(file, "missing" if is_of_setup else "wrong", message)
     if lookup.state == "not installed":
         return FilePlace(file, "missing", message)
-    names = {*map(posixpath.basename, owner.tree.files)}
-    names.discard(posixpath.basename(file.location.path))
+    names = {*map(basename, owner.tree.files)}
+    names.discard(basename(file.location.path))
     alike = sorted(name for name in names if name.lower().endswith(_ENDINGS[file.purpose]))
     is_include = file.purpose == "include"
     if not alike and not is_include:
@@ -335,7 +337,7 @@ def _place_not_there(owner: Package, target: str, lookup: Lookup, file: "NamedFi
 
 def _similar_file(target: str, alike: list[str], *, is_include: bool) -> str | None:
     """Return the file that is meant: of a similar name, else the only one of its kind."""
-    similar = closest(posixpath.basename(target), alike)
+    similar = closest(basename(target), alike)
     if similar is None and len(alike) == 1 and not is_include:
         return alike[0]
     return similar

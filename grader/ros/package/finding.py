@@ -1,23 +1,27 @@
 """The packages in a file tree, and the files kept of earlier work among them."""
 
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import product
+from posixpath import basename
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
 from grader.base.names import closest, folded
+from grader.base.patterns import on_use
 from grader.base.reuse import Memory
 from grader.base.source import Location, Source
 from grader.files.tree import Tree
 from grader.ros.installation.manifest import Manifest, read_manifest
 from grader.ros.installation.places import SHARE
-from grader.ros.known.releases import Release
-from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
+from grader.ros.known.releases import Releases
+from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package, Packages
 from grader.ros.package.robot_file import launch_folders
 from grader.ros.package.robots import RobotFile
 from grader.ros.python.budget import Budget, whole_budget
+
+_Packages = dict[str, Package]  # by their folders
 
 # The files that hide a folder, with all that is below, from colcon.
 IGNORING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
@@ -29,8 +33,8 @@ _TEXTS = (
 )
 _MAX_MANIFEST_SIZE = 256 * 1024  # bytes
 _NAMED, _IN_NAMED_FOLDER, _SIMILAR, _OTHER = range(4)  # how well a package has a name
-_CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
-_WORD = re.compile(r"[^\W\d_]+")
+_CAMEL = on_use(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
+_WORD = on_use(r"[^\W\d_]+")
 _WORDS = frozenset(
     {
         "old",
@@ -71,7 +75,8 @@ def find_packages(tree: Tree, names: Sequence[str], most: int = _MAX_PACKAGES) -
 
     These are those with a package.xml, and those of these names with only a setup.py.
     """
-    with_manifest, with_setup = [], []
+    with_manifest = []
+    with_setup = []
     for path in tree.files:
         folder, _, name = path.rpartition("/")
         if name == MANIFEST:
@@ -79,27 +84,25 @@ def find_packages(tree: Tree, names: Sequence[str], most: int = _MAX_PACKAGES) -
         elif name == SETUP:
             with_setup.append(folder)
     named = [
-        folder
-        for folder in with_setup
-        if folder not in with_manifest and folder.rpartition("/")[2] in names
+        folder for folder in with_setup if folder not in with_manifest and basename(folder) in names
     ]
     if not with_manifest and not named:
         named = with_setup
-    return sorted([*with_manifest, *named], key=_depth)[:most]
+    return sorted(with_manifest + named, key=_depth)[:most]
 
 
 def read_packages(
     tree: Tree,
     urdf: str,
     name: str = "",
-    names: tuple[str, ...] = (),
+    names: Strings = (),
     memory: Memory | None = None,
     installed: frozenset[str] = frozenset(),
     most: int = _MAX_PACKAGES,
     *,
-    releases: tuple[Release, ...] = (),
+    releases: Releases = (),
     are_whole: bool = False,
-) -> tuple[Package, ...]:
+) -> Packages:
     """Return the packages in a file tree, the one that matches best first.
 
     Among packages of one name it is one that is no backup, then the one with most of the files that
@@ -117,11 +120,12 @@ def read_packages(
         releases: The releases of ROS 2 for which they are graded; none: any.
         are_whole: Whether packages also have the files of those in them, as builds copy them.
     """
-    known: dict[str, Package] = {}
-    cache = memory if memory is not None else Memory()
+    known: _Packages = {}
+    cache = memory or Memory()
     wanted = names or (name,)
-    work = whole_budget(file.size for file in tree.files.values() if file.name.endswith(_TEXTS))
     folders = find_packages(tree, wanted, most)
+    sizes = (file.size for file in tree.files.values() if file.name.endswith(_TEXTS))
+    work = whole_budget(sizes, len(folders))
     packages = []
     for folder in folders:
         files = tree.below(folder)
@@ -159,7 +163,7 @@ def read_packages(
     return tuple(packages)
 
 
-def _copies(packages: Sequence[Package]) -> dict[str, tuple[str, ...]]:
+def _copies(packages: Sequence[Package]) -> dict[str, Strings]:
     """Return the folders of packages with one name that colcon finds below one folder src.
 
     It refuses to build any of them. It does not search in the folders of packages, and what is
@@ -170,9 +174,9 @@ def _copies(packages: Sequence[Package]) -> dict[str, tuple[str, ...]]:
     for package in packages:
         above, src, _ = f"/{package.folder}".partition("/src/")
         is_inner = any(package.folder.startswith(f"{other}/") for other in folders if other)
-        if src and not is_inner and package.manifest is not None:
+        if src and not is_inner and package.manifest:
             by_place.setdefault((above, package.name), []).append(package.folder)
-    copies = dict[str, tuple[str, ...]]()
+    copies = dict[str, Strings]()
     for alike in by_place.values():
         if len(alike) > 1:
             ordered = sorted(alike, key=lambda folder: (is_backup(folder), _depth(folder)))
@@ -180,7 +184,7 @@ def _copies(packages: Sequence[Package]) -> dict[str, tuple[str, ...]]:
     return copies
 
 
-def package_around(packages: tuple[Package, ...], path: str | None) -> Package | None:
+def package_around(packages: Packages, path: str | None) -> Package | None:
     """Return the innermost package that holds a file."""
     around = [package for package in packages if path is not None and package.holds(path)]
     return max(around, key=lambda package: len(package.folder), default=None)
@@ -201,7 +205,7 @@ def missing_files(package: Package, urdf: str) -> tuple[int, bool]:
     return sum(not present for present in usual), not has_urdf
 
 
-def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
+def best_named(packages: Packages, name: str) -> Package | None:
     """Return the package that has this name, or is in a folder of this name.
 
     Returns any package if the name is empty.
@@ -211,12 +215,12 @@ def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
     return None
 
 
-def packages_named(packages: Sequence[Package], names: Sequence[str]) -> dict[str, Package]:
+def packages_named(packages: Sequence[Package], names: Sequence[str]) -> _Packages:
     """Return the package that each name means.
 
     This is that of the name, else in a folder of it, else of a similar name.
     """
-    chosen: dict[str, Package] = {}
+    chosen: _Packages = {}
     for distance, name in product((_NAMED, _IN_NAMED_FOLDER, _SIMILAR), names):
         if name in chosen:
             continue
@@ -230,32 +234,32 @@ def packages_named(packages: Sequence[Package], names: Sequence[str]) -> dict[st
 
 def _name_distance(package: Package, name: str) -> int:
     """Return how well a package has a name; the smallest is best."""
-    if package.manifest is not None and package.manifest.name == name:
+    if package.manifest and package.manifest.name == name:
         return _NAMED
-    package_name = package.manifest.name if package.manifest is not None else package.name
-    if package.folder.rpartition("/")[2] == name or (
+    package_name = package.manifest.name if package.manifest else package.name
+    if basename(package.folder) == name or (
         package_name is not None and folded(package_name) == folded(name)
     ):
         return _IN_NAMED_FOLDER
-    if package.manifest is not None and closest(package.name, [name]):
+    if package.manifest and closest(package.name, [name]):
         return _SIMILAR
     return _OTHER
 
 
-def _is_outside(folders: tuple[str, ...], path: str) -> bool:
+def _is_outside(folders: Strings, path: str) -> bool:
     return not path.startswith(folders)
 
 
 def renewed_packages(packages: Sequence[Package], work: Budget) -> dict[Package, Package]:
     """Return the packages of a workspace with another budget, as if nothing of them were read."""
-    table: dict[str, Package] = {}
+    table: _Packages = {}
     renewed = {one.folder: replace(one, packages=table, work=work) for one in packages}
     for name, package in packages[0].packages.items():
         table[name] = renewed[package.folder]
     return dict(zip(packages, renewed.values(), strict=True))
 
 
-def _inner_folders(files: Tree, folder: str, folders: Sequence[str]) -> tuple[str, ...]:
+def _inner_folders(files: Tree, folder: str, folders: Sequence[str]) -> Strings:
     """Return the folders of packages in a package. A stray package.xml makes none."""
     prefix = f"{folder}/" if folder else ""
     inner = []
@@ -290,12 +294,10 @@ def _find_marker(tree: Tree, folder: str) -> str:
         folder = folder.rpartition("/")[0]
 
 
-def launched_paths(
-    tree: Tree, packages: tuple[Package, ...], robots: Sequence[RobotFile]
-) -> set[str]:
+def launched_paths(tree: Tree, packages: Packages, robots: Sequence[RobotFile]) -> set[str]:
     """Return the paths of the robots that launch files load, also without a package."""
-    loose = [robot.path for robot in robots if package_around(packages, robot.path) is None]
-    launched: set[str] = set()
+    loose = [robot.path for robot in robots if not package_around(packages, robot.path)]
+    launched = set()
     for package in (*packages, *launch_folders(tree, packages, loose)):
         for reference in {named.path or "" for named in package.robot_references()}:
             launched |= _paths_of_reference(reference, package, robots)
@@ -312,6 +314,6 @@ def _paths_of_reference(reference: str, package: Package, robots: Sequence[Robot
     if source:
         return {owner.path(source)}
     # Where the build is not understood, the name of the file has to do.
-    file_name = reference.rpartition("/")[2]
+    file_name = basename(reference)
     alike = [robot.path for robot in robots if robot.name == file_name]
     return {path for path in alike if owner.holds(path)}

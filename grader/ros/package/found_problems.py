@@ -5,14 +5,16 @@ They are the same whatever the files are graded on.
 
 from collections.abc import Collection, Iterable, Iterator
 from fnmatch import fnmatchcase
+from functools import partial
+from posixpath import basename
 
 from grader.base.names import did_you_mean
-from grader.base.problems import NO_FIXES, Fixes, Problem
+from grader.base.problems import NO_FIXES, Fix, Fixes, Problem
 from grader.base.slips import Slip, fix_together
 from grader.base.source import Location, Source
-from grader.base.text import enumerated
+from grader.base.text import enumerated, quoted
 from grader.ros.installation import package_problems as kinds
-from grader.ros.installation.installation import Installation
+from grader.ros.installation.installation import Installation, InstallError
 from grader.ros.installation.places import is_of_one_machine, one_machine_only
 from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import Launch, LaunchFault
@@ -29,8 +31,13 @@ def package_problems(package: Package) -> tuple[Problem, ...]:
     Those of each file are sorted by location.
     """
     problems = build_problems(package)
-    for path in package.launch_files[:_MAX_FILES]:
-        problems += launch_problems(package.launch(path))
+    launches = {path: package.launch(path) for path in package.launch_files[:_MAX_FILES]}
+    included = set()  # whose problems are those of the files that include them
+    for launch in launches.values():
+        included |= {package.installed.get(passed.path) for passed in launch.passed}
+    for path, launch in launches.items():
+        if path not in included:
+            problems += launch_problems(launch)
     for path in package.rviz_files[:_MAX_FILES]:
         problems += sorted_problems(package.rviz(path).problems)
     return tuple(problems)
@@ -38,13 +45,13 @@ def package_problems(package: Package) -> tuple[Problem, ...]:
 
 def build_problems(package: Package, releases: Collection[Release] = ()) -> list[Problem]:
     """Return the problems of package.xml, and of setup.py or CMakeLists.txt, in some releases."""
-    problems: list[Problem] = []
+    problems = []
     if package.copies:
         place = Location(f"{package.copies[0]}/{MANIFEST}", 1, 1)
         problems.append(Problem(kinds.PACKAGE_TWICE, package.copies_text, place))
-    if package.manifest is not None:
+    if package.manifest:
         problems += sorted_problems(package.manifest.problems)
-    if package.installation is not None:
+    if package.installation:
         setup = package.installation.in_releases(releases)
         problems += sorted_problems(_setup_problems(package, setup))
     return problems
@@ -75,21 +82,25 @@ def sorted_problems(problems: Iterable[Problem]) -> list[Problem]:
 
 def _syntax_problem(setup: Installation, fault: SyntaxFault) -> Problem:
     """Return that a setup.py or CMakeLists.txt cannot be read."""
-    kind, text = kinds.SETUP_SYNTAX, setup.fault_text
+    kind = kinds.SETUP_SYNTAX
+    text = setup.fault_text
     if not fault.is_certain:
-        kind, text = _SETUP_UNREAD, f"{setup.file} is not read: {fault.message}"
+        kind = _SETUP_UNREAD
+        text = f"{setup.file} is not read: {fault.message}"
     fixes = NO_FIXES if setup.is_cmake else syntax_fixes(setup.source)
     return Problem(kind, text, fault.location, fixes=fixes)
 
 
 def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
-    if setup.fault is not None:
+    if setup.fault:
         yield _syntax_problem(setup, setup.fault)
         return
     for error in setup.faults:
         yield Problem(kinds.SETUP_NAME, error.message, setup.location(error.at))
     for stop in setup.stops:
-        yield Problem(kinds.SETUP_STOPS, stop.message + stop.hint, setup.location(stop.at))
+        at = setup.location(stop.at)
+        fixes = Fixes(partial(_fix_stop, setup, stop))
+        yield Problem(kinds.SETUP_STOPS, stop.message + stop.hint, at, fixes=fixes)
     for later in setup.later_stops:
         yield Problem(kinds.OLDER_ONLY, later.note, setup.location(later.at))
     for empty in setup.empty:
@@ -111,13 +122,24 @@ def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
         yield from cmake_problems(package, setup)
 
 
+def _fix_stop(setup: Installation, stop: InstallError) -> list[Fix]:
+    """Return the fix that writes what is meant in the call that stops a build, or before it."""
+    text, (written, meant) = setup.source.text, stop.change
+    start = setup.source.start_offset(setup.location(stop.at))
+    at = text.find(written, start, text.find(")", start))
+    if not meant or at < 0:
+        return []
+    edit = setup.source.edit(at, at + len(written), meant)
+    return [Fix((edit,), f"{quoted(written)} is read as {quoted(meant)}")]
+
+
 def _naming_problems(package: Package, setup: Installation) -> Iterator[Problem]:
     """Yield what is wrong with the package's name in setup.py.
 
     Also yield what is wrong with the entries that register the package.
     """
     start = setup.location(setup.called_at)
-    declared = package.manifest.name if package.manifest is not None else None
+    declared = package.manifest.name if package.manifest else None
     is_known = not (setup.unknown or setup.stops)
     if declared is not None and setup.name is not None and setup.name != declared:
         message = f"package.xml names the package {declared!r}, setup.py names it {setup.name!r}"
@@ -128,7 +150,8 @@ def _naming_problems(package: Package, setup: Installation) -> Iterator[Problem]
 
 def _entry_problems(package: Package, setup: Installation, *, is_known: bool) -> Iterator[Problem]:
     """Yield which entries that register the package are missing in setup.py."""
-    start, targets = setup.location(setup.called_at), setup.installed()
+    start = setup.location(setup.called_at)
+    targets = setup.installed()
     if is_known and RESOURCE_INDEX + package.name not in targets:
         message = (
             f"data_files has no entry for the resource index: resource/{package.name} is not "
@@ -150,7 +173,7 @@ def _launch_problems(launch: Launch) -> Iterator[Problem]:
     if launch.unread:
         message = f"the launch file is not read: {launch.unread}"
         yield Problem(_LAUNCH_UNREAD, message, Location(launch.source.path, 1, 1))
-    if launch.syntax is not None:
+    if launch.syntax:
         yield launch_syntax(launch, launch.syntax)
     for fault in launch.faults:
         yield Problem(kinds.LAUNCH_FAULT, f"{fault.message}{fault.hint}", fault.location)
@@ -191,9 +214,7 @@ def why_no_match(package: Package, pattern: str) -> str:
             f", because there is no folder {folder!r}{did_you_mean(folder, package.tree.folders)}"
         )
     files = [
-        path
-        for path in package.tree.files
-        if name.strip("*") and fnmatchcase(path.rpartition("/")[2], name)
+        path for path in package.tree.files if name.strip("*") and fnmatchcase(basename(path), name)
     ]
     files = files or [path for path in package.tree.files if path.rpartition("/")[0] == folder]
     if not files:

@@ -4,18 +4,19 @@ What may be in the rest is not missing.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
+from grader.base.patterns import on_use
 from grader.base.problems import Problem, in_order
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree
 from grader.ros.package.mesh_files import mesh_problems
-from grader.ros.package.package import Package
+from grader.ros.package.package import Packages
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf import urdf_problems as kinds
 
-_HARDWARE = re.compile(rb"<hardware>.*?(?:</hardware>|\Z)", re.DOTALL)
-_CONDITION = re.compile(rb"<xacro:(if|unless)\b")
+_HARDWARE = on_use(rb"<hardware>.*?(?:</hardware>|\Z)", re.DOTALL)
+_CONDITION = on_use(rb"<xacro:(if|unless)\b")
 # That something is not there, or is there twice.
 _OF_THE_WHOLE = frozenset(
     {
@@ -32,14 +33,18 @@ _OF_THE_WHOLE = frozenset(
 
 
 def problems_of_robot(
-    robot: Read, packages: tuple[Package, ...], tree: Tree
+    robot: Read, packages: Packages, tree: Tree, is_started: Callable[[], bool]
 ) -> tuple[Problem, ...]:
-    """Return the problems of a robot and of its meshes, in the order of their places."""
+    """Return the problems of a robot and of its meshes, in the order of their places.
+
+    `is_started` says whether the robot is started, and always under the arguments of xacro under
+    which it was read.
+    """
     meshes = mesh_problems(robot, packages, tree)
     robot_problems = [
         problem
         for problem in _listed(robot.loaded.problems)
-        if not _is_chosen(problem, robot, tree)
+        if not _is_chosen(problem, robot, tree) or is_started()
     ]
     return in_order((*robot_problems, *meshes))
 

@@ -1,17 +1,20 @@
 """What builds install at the paths where files look for others, and what a package has instead."""
 
-import posixpath
 import re
-from typing import Literal, NamedTuple
+from posixpath import basename, dirname
+from typing import Literal
 
-from grader.base.names import closest
+from grader.base.grouping import only_one
+from grader.base.names import closest, near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.ros.package.package import CMAKE, Package
 
-_FOR_TESTS = re.compile(r"if\s*+\(\s*+BUILD_TESTING.*?(?:endif|\Z)", re.DOTALL)
+_FOR_TESTS = on_use(r"if\s*+\(\s*+BUILD_TESTING.*?(?:endif|\Z)", re.DOTALL)
 _MAX_CMAKE, _MAX_FILE = 128 * 1024, 512 * 1024  # bytes
 
 
-class Lookup(NamedTuple):
+class Lookup(Named):
     """What a build installs at a path where a file is looked for, or why nothing.
 
     The reason is the end of a sentence.
@@ -29,9 +32,9 @@ def look_up(owner: Package, target: str) -> Lookup:
     If it installs nothing there, return what the package has instead.
     """
     setup = owner.installation
-    if setup is None:
+    if not setup:
         return Lookup("no build", text=f"its package has no {owner.missing_build_file}")
-    if setup.fault is not None:
+    if setup.fault:
         if setup.unread:
             return Lookup("unknown", text=setup.unread)
         return Lookup("no build", text=setup.fault_text)
@@ -48,17 +51,18 @@ def look_up(owner: Package, target: str) -> Lookup:
 
 def _instead(owner: Package, target: str) -> Lookup:
     """Return what a package, or a build of it, has instead of a file at a path below the prefix."""
-    name, sources = posixpath.basename(target), _meant_by(owner, target)
+    name = basename(target)
+    sources = _meant_by(owner, target)
     elsewhere = next((path for path, source in owner.installed.items() if source in sources), "")
     if not sources:  # builds may install a file under another name
-        elsewhere = next((path for path in owner.installed if posixpath.basename(path) == name), "")
+        elsewhere = next((path for path in owner.installed if basename(path) == name), "")
     if elsewhere:
         return Lookup("elsewhere", elsewhere, f"a build installs it as {elsewhere}")
     if not sources:
         return Lookup("absent", text=f"the package has no file {name!r}")
     text = f"a build does not install {sources[0]}"
     for path, source in owner.installed.items():
-        if posixpath.basename(source) == name:
+        if basename(source) == name:
             return Lookup("not installed", sources[0], f"{text}; it installs {source} as {path}")
     return Lookup("not installed", sources[0], text)
 
@@ -68,14 +72,11 @@ def _meant_by(owner: Package, target: str) -> list[str]:
 
     If there is none, return all with the same name.
     """
-    inside, name = target.removeprefix(owner.share), posixpath.basename(target)
+    inside = target.removeprefix(owner.share)
+    name = basename(target)
     if inside in owner.tree.files:
         return [inside]
-    return [
-        path_in_package
-        for path_in_package in owner.tree.files
-        if posixpath.basename(path_in_package) == name
-    ]
+    return owner.files_by_name.get(name, [])
 
 
 def is_surely_absent(package: Package, target: str) -> bool:
@@ -86,32 +87,32 @@ def is_surely_absent(package: Package, target: str) -> bool:
     What a program writes is in a folder of its own, and like no other, or a folder itself.
     """
     folder, _, name = target.rpartition("/")
-    folders = {posixpath.dirname(path) for path in package.installed}
+    folders = {dirname(path) for path in package.installed}
     is_like_another = similar_file(package, name) is not None
     return is_like_another or (folder in folders and "." in name)
 
 
 def similar_file(package: Package, name: str) -> str | None:
     """Return the name of the file of a package that may be meant by another name."""
-    return closest(name, map(posixpath.basename, package.tree.files))
+    return closest(name, map(basename, package.tree.files))
 
 
 def meant_file(package: Package, target: str) -> str:
-    """Return the only file of a package whose name a misspelt path below the prefix means.
+    """Return the only file of a package whose name a misspelt path below the prefix surely means.
 
     It is empty without one, and where the package has a file of the name that is written.
     """
     if _meant_by(package, target):
         return ""
-    meant = similar_file(package, posixpath.basename(target))
-    paths = [path for path in package.tree.files if posixpath.basename(path) == meant]
-    return paths[0] if len(paths) == 1 else ""
+    meant = near(basename(target), map(basename, package.tree.files))
+    paths = [path for path in package.tree.files if basename(path) == meant]
+    return only_one(paths) or ""
 
 
 def are_installs_known(package: Package) -> bool:
     """Return whether it is known what a build of a package installs."""
     setup = package.installation
-    is_known = setup is not None and setup.fault is None and not setup.unknown
+    is_known = setup is not None and not setup.fault and not setup.unknown
     return is_known and not _installs_for_tests(package)
 
 
@@ -124,9 +125,10 @@ def open_meant(
 
     With `absent_are_empty`, a file that surely is not there is empty.
     """
-    opened, parts = package.open_installed(path), path.split("/")
+    opened = package.open_installed(path)
+    parts = path.split("/")
     owner = package.find(parts[1]) if opened is None and len(parts) > 2 else None
-    if owner is None:
+    if not owner:
         return opened
     named = _meant_by(owner, path)
     if (

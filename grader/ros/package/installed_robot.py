@@ -8,10 +8,11 @@ The file is read again from what builds install, so that the ordinary readers sa
 import posixpath
 from collections.abc import Collection
 from itertools import chain
-from typing import NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
 from grader.base.problems import Problem
+from grader.base.records import Named
 from grader.files.reading import URDF_LIMIT
 from grader.ros.package.mesh_files import mesh_file
 from grader.ros.package.package import Package
@@ -20,14 +21,14 @@ from grader.ros.urdf.model import Mesh, Robot
 from grader.ros.urdf.reader import read_robot, read_urdf
 
 
-class InstalledRobot(NamedTuple):
+class InstalledRobot(Named):
     """A robot as it is installed.
 
     `missing` are files of the workspace that it needs and a build does not install; `warning` is
     the first text that xacro writes to standard error.
     """
 
-    missing: tuple[str, ...] = ()
+    missing: Strings = ()
     warning: Problem | None = None
 
 
@@ -122,9 +123,7 @@ def read_installed(
 
 def _note_meshes(robot: Robot | None, files: _InstalledFiles, *, is_expanded: bool) -> None:
     """Note the meshes that a robot shows and that are not installed."""
-    for visual in (
-        chain.from_iterable(link.visuals for link in robot.links) if robot is not None else ()
-    ):
+    for visual in chain.from_iterable(link.visuals for link in robot.links) if robot else ():
         if isinstance(visual.geometry, Mesh):
             file = mesh_file(visual.geometry.filename, is_expanded=is_expanded)
             path = posixpath.normpath(f"share/{file.package}/{file.path}")

@@ -1,25 +1,26 @@
 """Paths that programs, launch files and xacro make of variables, which files may have."""
 
 import posixpath
-import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Source
 from grader.ros.python.made_texts import UNKNOWN, made_texts
 from grader.ros.python.parse import Code, parse
 
-_SUBSTITUTION = re.compile(r"\$\((?:[^()]|\([^()]*\))*\)|\$\{[^{}]*\}|\$ENV\{\w+\}|\$\w+")
-_WORD = re.compile(r"[^\s\"'<>,;=()\[\]{}]+")
-_END_IN_CPP = re.compile(r"\"([_.-][\w.-]*)\"")
+_SUBSTITUTION = on_use(r"\$\((?:[^()]|\([^()]*\))*\)|\$\{[^{}]*\}|\$ENV\{\w+\}|\$\w+")
+_WORD = on_use(r"[^\s\"'<>,;=()\[\]{}]+")
+_END_IN_CPP = on_use(r"\"([_.-][\w.-]*)\"")
 _CPP = (".cpp", ".hpp", ".cc", ".h")
-_QUOTE = re.compile("[\"']")
+_QUOTE = on_use("[\"']")
 
 
-class MadePath(NamedTuple):
+class MadePath(Named):
     """The end of a path that a text makes of variables: what is written, around unknown parts."""
 
-    pieces: tuple[str, ...]
+    pieces: Strings
 
     def matches(self, path: str) -> bool:
         """Return whether a whole path may end so.

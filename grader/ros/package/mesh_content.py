@@ -4,6 +4,7 @@ import posixpath
 import struct
 
 from grader.base.errors import InputError, NotDecided
+from grader.base.patterns import on_use
 from grader.files.tree import File
 
 LFS_POINTER = b"version https://git-lfs.github.com/spec/"
@@ -13,6 +14,10 @@ _HEAD, _TRIANGLE = (
     50,
 )  # bytes of a binary STL: its head, which ends in the number of triangles, and each of them
 _BEGINS_WITH = {".glb": b"glTF", ".ply": b"ply"}
+# The numbers of COLLADA: how many there are, and all of them.
+_ARRAY = on_use(
+    rb"""<float_array\b[^<>]{0,200}\bcount\s?=\s?["'](\d{1,9})["'][^<>]{0,200}>([^<]*)<"""
+)
 
 
 def content_fault(file: File, path: str) -> str:
@@ -36,9 +41,14 @@ def content_fault(file: File, path: str) -> str:
             "a mesh is a Git LFS pointer",
         )
     suffix = posixpath.splitext(path)[1].lower()
-    if _is_of_format(file, start, suffix):
-        return ""
-    return f"is no {suffix.removeprefix('.').upper()} file"
+    if not _is_of_format(file, start, suffix):
+        return f"is no {suffix.removeprefix('.').upper()} file"
+    is_plain = suffix == ".dae" and b"<!" not in start  # without comments, and CDATA
+    for count, numbers in _ARRAY.findall(start) if is_plain else ():
+        there = len(numbers.split())
+        if int(count) > there:  # of which Assimp expects more
+            return f"promises {int(count)} values in a <float_array> and has {there}"
+    return ""
 
 
 def _is_of_format(file: File, start: bytes, suffix: str) -> bool:

@@ -3,15 +3,17 @@
 No mesh is loaded.
 """
 
-import posixpath
 import re
 from collections.abc import Iterator, Sequence
 from itertools import islice
-from typing import NamedTuple
+from posixpath import basename, dirname, normpath
 
 from grader.base.errors import NotDecided
+from grader.base.grouping import Strings
 from grader.base.names import closest
+from grader.base.patterns import on_use
 from grader.base.problems import Problem
+from grader.base.records import Named
 from grader.base.source import LazyLocation
 from grader.base.text import quoted, quoted_end
 from grader.files.tree import File, Tree
@@ -23,10 +25,10 @@ from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.model import Mesh, Robot
 
-_SCHEME = re.compile(
+_SCHEME = on_use(
     r"([A-Za-z][A-Za-z0-9+.-]+):(//)?(.*)", re.DOTALL
 )  # one letter is a disk of Windows
-_ABSOLUTE = re.compile(r"[/~\\]|[A-Za-z]:")
+_ABSOLUTE = on_use(r"[/~\\]|[A-Za-z]:")
 _ONE_MACHINE = "exists on one machine only; use package://"
 RELATIVE = "is at a relative path, which RViz does not find; use package://"
 _BACKSLASH = "has a \\ in its path; separate folders by /"
@@ -34,7 +36,7 @@ _BACKSLASH = "has a \\ in its path; separate folders by /"
 _MAX_WARNED = 20  # meshes of one file
 
 
-class MeshFile(NamedTuple):
+class MeshFile(Named):
     """The file name of a <mesh>, or why ROS 2 does not find such a name.
 
     It has the package that the name gives and the path in it.
@@ -50,14 +52,15 @@ class MeshFile(NamedTuple):
     doubt: str = ""
 
     @property
-    def steps(self) -> tuple[str, ...]:
+    def steps(self) -> Strings:
         """The package, the folders and the name."""
-        whole = posixpath.normpath(f"{self.package}/{self.path}".replace("\\", "/"))
+        whole = normpath(f"{self.package}/{self.path}".replace("\\", "/"))
         return tuple(step for step in whole.split("/") if step)
 
     def ends_in(self, other: "MeshFile", *, any_case: bool = False) -> bool:
         """Return whether the path ends in all the steps of another one."""
-        steps, end = self.steps, other.steps
+        steps = self.steps
+        end = other.steps
         if any_case:
             steps, end = (tuple(map(str.casefold, path)) for path in (steps, end))
         return steps[-len(end) :] == end != ()
@@ -83,8 +86,8 @@ class MeshFile(NamedTuple):
                 )
             return ""
         package = packages[0].find(self.package)
-        path = posixpath.normpath(self.path)
-        if package is None:
+        path = normpath(self.path)
+        if not package:
             return _without_package(self.package, path, packages, tree)
         if path.startswith("../") or path in ("..", "."):
             return "is outside of its package"
@@ -96,14 +99,14 @@ class MeshFile(NamedTuple):
         It is empty if nothing is, or there is no such file. Raises NotDecided.
         """
         file = self.file_in(packages)
-        return content_fault(file, self.path) if file is not None else ""
+        return content_fault(file, self.path) if file else ""
 
     def file_in(self, packages: Sequence[Package]) -> File | None:
         """Return its file in a package of the workspace; None if there is none."""
         package = packages[0].find(self.package) if packages else None
-        if package is None:
+        if not package:
             return None
-        path = posixpath.normpath(self.path)
+        path = normpath(self.path)
         lookup = look_up(package, f"share/{self.package}/{path}")
         return package.tree.files.get(lookup.path if lookup.state == "installed" else path)
 
@@ -114,15 +117,15 @@ def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
     `is_expanded` says whether xacro has been expanded in it.
     """
     match = _SCHEME.fullmatch(filename)
-    scheme, slashes, rest = match.groups() if match is not None else ("", "", filename)
+    scheme, slashes, rest = match.groups() if match else ("", "", filename)
     fault = _BACKSLASH if "\\" in filename else ""
     shared = _file_from_xacro(scheme, rest, fault) if is_expanded else None
-    if shared is not None:
+    if shared:
         return shared
     if scheme == "package" and slashes:
         package, _, path = rest.partition("/")
         return MeshFile(filename, path, package, fault)
-    if not scheme and _ABSOLUTE.match(filename) is None:
+    if not scheme and not _ABSOLUTE.match(filename):
         return MeshFile(filename, rest, "", fault)
     fault, doubt = _fault_of_scheme(scheme, slashes or "")
     return MeshFile(filename, rest, "", fault, doubt)
@@ -163,11 +166,11 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
     of home folders.
     """
     robot = urdf.loaded.robot
-    meshes = list_meshes(robot) if robot is not None else {}
+    meshes = list_meshes(robot) if robot else {}
     for name, (link, mesh) in islice(meshes.items(), _MAX_WARNED):
         file = mesh_file(name, is_expanded=urdf.is_expanded)
         fault = _sure_fault(file, packages, tree)
-        if fault and mesh.location is not None and "$" not in name:
+        if fault and mesh.location and "$" not in name:
             at = LazyLocation(mesh.location.source, mesh.location.tag, "filename")
             yield Problem(MESH_PATH, file.problem_text(link, fault), at.resolve())
 
@@ -200,13 +203,12 @@ def _fault_in_package(package: Package, target: str, tree: Tree) -> str:
 
     If it installs none there, return why.
     """
-    lookup, name = look_up(package, target), posixpath.basename(target)
+    lookup = look_up(package, target)
+    name = basename(target)
     file = package.tree.files.get(lookup.path) if lookup.state == "installed" else None
-    if file is not None:
+    if file:
         return content_fault(file, target)
-    if lookup.state == "unknown" or any(
-        posixpath.basename(path) == name for path in package.tree.files
-    ):
+    if lookup.state == "unknown" or any(basename(path) == name for path in package.tree.files):
         return _why_not_installed(package, target, lookup)
     if tree.unopened:
         raise NotDecided(
@@ -225,7 +227,7 @@ def _path_from_xacro(path: str) -> tuple[str, str] | None:
     from grader.ros.xacro.texts import INSTALLED  # late: most URDFs are no xacro
 
     match = re.fullmatch(rf"/*{INSTALLED}/([^/]+)/share/\1/+(.*)", path, re.DOTALL)
-    if match is not None:
+    if match:
         return (match[1], match[2])
     return None
 
@@ -256,8 +258,6 @@ def _why_not_installed(package: Package, target: str, lookup: Lookup) -> str:
         raise NotDecided(lookup.text, lookup.text)
     if lookup.state == "elsewhere":
         return f"is looked for at {target}, but {lookup.text}"
-    if setup is None or lookup.state == "no build":
+    if not setup or lookup.state == "no build":
         return f"is not installed: {lookup.text}"
-    return (
-        f"is not installed: add {lookup.path} to {setup.entries}, for {posixpath.dirname(target)}"
-    )
+    return f"is not installed: add {lookup.path} to {setup.entries}, for {dirname(target)}"

@@ -14,7 +14,7 @@ from grader.files.tree import File, Tree
 from grader.ros.package.installed_files import look_up
 from grader.ros.package.mesh_content import LFS_POINTER
 from grader.ros.package.mesh_files import RELATIVE, MeshFile, list_meshes, mesh_file
-from grader.ros.package.package import Package
+from grader.ros.package.package import Package, Packages
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.model import Mesh
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grader.ros.mesh.triangles import Triangles
 
 # Returns the packages with some names, and the files that they are among.
-Around = Callable[[Collection[str]], tuple[tuple[Package, ...], Tree]]
+Around = Callable[[Collection[str]], tuple[Packages, Tree]]
 
 # Of the meshes of a robot together.
 _MAX_SIZE = 64 * 1024 * 1024  # bytes
@@ -41,9 +41,10 @@ class MeshLoader:
         self.kept: dict[tuple[str, str], Triangles | str] = {}
         self._robot = robot
         self._read_around = read_around
-        self._around: tuple[tuple[Package, ...], Tree] | None = None
+        self._around: tuple[Packages, Tree] | None = None
         self._loaded: dict[str, Triangles | str] = {}  # by the names of the files
-        self._free_size, self._free_triangles = _MAX_SIZE, _MAX_TRIANGLES
+        self._free_size = _MAX_SIZE
+        self._free_triangles = _MAX_TRIANGLES
 
     def load(self, mesh: Mesh) -> "Triangles | str":
         """Return the triangles of a mesh, before it is scaled, or why it cannot be shown.
@@ -70,7 +71,7 @@ class MeshLoader:
         packages, tree = self._around
         path = posixpath.normpath(named.path)
         package = packages[0].find(named.package) if packages else None
-        if package is not None:
+        if package:
             return _find_in_package(named, package, path, tree)
         # RViz needs a package.xml; a folder with the package's name surely has the mesh.
         end = f"/{named.package}/{path}"
@@ -86,7 +87,7 @@ class MeshLoader:
     def _name_packages(self) -> set[str]:
         """Return the names of the packages that the robot's meshes are in."""
         robot = self._robot.loaded.robot
-        meshes = list_meshes(robot) if robot is not None else {}
+        meshes = list_meshes(robot) if robot else {}
         files = [mesh_file(filename, is_expanded=self._robot.is_expanded) for filename in meshes]
         return {file.package for file in files if file.package}
 
@@ -126,10 +127,10 @@ def _find_in_package(named: MeshFile, package: Package, path: str, tree: Tree) -
     try:
         fault = named.why_not_found((package,), tree)
     except NotDecided as reason:
-        if file is not None:
+        if file:
             return file
         fault = f"is not here: {reason}"
-    if file is None or fault:
+    if not file or fault:
         if place.state in ("absent", "no build"):
             fault += f"; it is looked for at {target}"
         return fault

@@ -4,13 +4,16 @@ Its files are read one by one when they are needed, each once, and never run.
 """
 
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from pathlib import PurePosixPath
+from posixpath import basename
 from typing import TYPE_CHECKING
 
 from grader.base.errors import InputError, MissingElement, NotDecided
+from grader.base.grouping import Strings, StringsByName, distinct, group_values
 from grader.base.names import closest, near
+from grader.base.records import Record
 from grader.base.reuse import Memory
 from grader.base.source import Location, Source
 from grader.base.text import enumerated, was_not_committed
@@ -28,7 +31,7 @@ from grader.ros.python.budget import PYTHON_LIMIT, Budget
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from grader.ros.config.rviz import RvizFile
     from grader.ros.installation.installation import Installation, InstalledFile, KnownPrograms
@@ -36,7 +39,10 @@ if TYPE_CHECKING:
     from grader.ros.known.releases import Release
     from grader.ros.launch.launch_model import Launch, NamedFile
 
-MANIFEST, SETUP, CMAKE = "package.xml", "setup.py", "CMakeLists.txt"
+
+MANIFEST = "package.xml"
+SETUP = "setup.py"
+CMAKE = "CMakeLists.txt"
 RESOURCE_INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
 _RVIZ_LIMIT = 512 * 1024  # bytes
@@ -50,8 +56,7 @@ _KINDS = {
 }
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Package:
+class Package(Record):
     """One ROS 2 package of a workspace, whose files are read and never run.
 
     `finding.py` finds the packages of a file tree.
@@ -73,19 +78,19 @@ class Package:
     tree: Tree  # its files, by their paths in the package
     manifest: "Manifest | None"
     packages: dict[str, "Package"]  # all of the workspace, by their names
-    generated: tuple[str, ...] = ()  # paths in the workspace that a build has copied
+    generated: Strings = ()  # paths in the workspace that a build has copied
     wanted_name: str = ""  # the name by which it was looked for
-    wanted_packages: tuple[str, ...] = ()  # of several that were looked for, the names of all
+    wanted_packages: Strings = ()  # of several that were looked for, the names of all
     installed_besides: frozenset[str] = frozenset()  # packages that are on its machines
     ignored_by: str = ""  # the path of a file for which colcon ignores it
     # The folders of packages with its name that colcon finds below one folder src, if there are
     # several; first the one that seems to be kept of earlier work.
-    copies: tuple[str, ...] = ()
+    copies: Strings = ()
     # Folders of packages in it, each with a slash, whose files it has: a build copies them.
-    inner: tuple[str, ...] = ()
+    inner: Strings = ()
     memory: Memory = field(default_factory=Memory)
     own_memory: Memory = field(default_factory=Memory)  # of its copies: they have the same files
-    arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
+    arguments: StringsByName = field(default_factory=dict)  # that its launch files are given
     releases: "tuple[Release, ...]" = ()  # for which it is graded; none: any
     work: Budget = field(default_factory=Budget)  # to read and compare all files of the workspace
     budget: Budget = field(init=False)  # of the evaluation of its files
@@ -105,7 +110,7 @@ class Package:
         """Return whether a path of the workspace is in the package."""
         return path.startswith(self.path(""))
 
-    def under(self, arguments: "Mapping[str, str]") -> "Package":
+    def under(self, arguments: StringsByName) -> "Package":
         """Return the package with its launch files under these arguments."""
         return replace(self, arguments=arguments)
 
@@ -115,7 +120,7 @@ class Package:
 
         Without a package.xml, it is that of setup.py or of the folder.
         """
-        if self.manifest is not None and self.manifest.name is not None:
+        if self.manifest and self.manifest.name is not None:
             return self.manifest.name
         return (self.installation and self.installation.name) or PurePosixPath(
             self.folder or self.tree.name
@@ -128,12 +133,21 @@ class Package:
         """
         if name == self.name:
             return self
-        if name in self.packages:
-            return self.packages[name]
+        return self.packages.get(name) or self._by_registered_name.get(name)
+
+    @cached_property
+    def _by_registered_name(self) -> "dict[str, Package]":
+        """The packages of the workspace by the names that setup.py registers them by."""
+        packages: dict[str, Package] = {}
         for package in self.packages.values():
-            if name in package.names:
-                return package
-        return None
+            for name in package.registered:
+                packages.setdefault(name, package)
+        return packages
+
+    @cached_property
+    def files_by_name(self) -> dict[str, list[str]]:
+        """The paths of its files by the last part of each."""
+        return group_values((basename(path), path) for path in self.tree.files)
 
     @property
     def copies_text(self) -> str:
@@ -154,15 +168,15 @@ class Package:
         return self._build_type == "catkin" and self.depends_on("catkin")
 
     @cached_property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> Strings:
         """The names that ROS 2 finds it by.
 
         These are its own, and those that setup.py installs in the resource index.
         """
-        return tuple(dict.fromkeys([self.name, *self.registered]))
+        return distinct([self.name, *self.registered])
 
     @cached_property
-    def registered(self) -> tuple[str, ...]:
+    def registered(self) -> Strings:
         """The names that setup.py registers it by: those of its files in the resource index."""
         return tuple(
             path.removeprefix(RESOURCE_INDEX)
@@ -201,9 +215,9 @@ class Package:
         A broken one is returned too if its build type can be read.
         """
         manifest = self.manifest
-        if manifest is not None and manifest.unread:
+        if manifest and manifest.unread:
             raise NotDecided(manifest.unread, "package.xml cannot be read")
-        if manifest is None:
+        if not manifest:
             where = f"the folder {self.folder!r}" if self.folder else "the submission"
             message = f"{where} has a setup.py, but no package.xml, so it is not a ROS 2 package"
             raise MissingElement(MANIFEST, self.folder, message=message, absent=MANIFEST)
@@ -221,12 +235,12 @@ class Package:
         manual grading.
         """
         setup = self.installation
-        if setup is None:
+        if not setup:
             message = f"the package has no {self.missing_build_file}, so a build installs nothing"
             raise MissingElement(
                 SETUP, self.folder, message=message, absent=self.missing_build_file
             )
-        if setup.fault is not None and setup.fault.is_certain:
+        if setup.fault and setup.fault.is_certain:
             raise MissingElement(
                 SETUP, self.folder, message=setup.fault_text, location=setup.fault.location
             )
@@ -246,7 +260,7 @@ class Package:
 
     @property
     def _build_type(self) -> str:
-        if self.manifest is not None:
+        if self.manifest:
             return self.manifest.build_type
         return ""
 
@@ -258,7 +272,7 @@ class Package:
     def _read_installation(self, _: object) -> "Installation | None":
         name = CMAKE if self.is_cmake else SETUP
         file = self.tree.files.get(name)
-        if file is None:
+        if not file:
             return None
         from grader.ros.installation.installation import Installation
         from grader.ros.python.parse import SyntaxFault
@@ -273,9 +287,10 @@ class Package:
         if self.is_cmake:
             from grader.ros.installation.cmake.cmake_lists import read_cmake
 
-            declared = (self.manifest.name if self.manifest is not None else None) or ""
+            declared = (self.manifest.name if self.manifest else None) or ""
             text = data.decode("utf-8", "replace")
-            setup = read_cmake(text, path, self.tree, declared, self.budget)
+            is_plain = self._build_type == "cmake"
+            setup = read_cmake(text, path, self.tree, declared, self.budget, is_plain=is_plain)
             return setup.in_releases(self.releases)
         from grader.ros.installation.setup_py import read_setup
 
@@ -284,7 +299,7 @@ class Package:
     @cached_property
     def installed(self) -> dict[str, str]:
         """Each installed file's path in the package, by its path below the prefix."""
-        if self.installation is not None:
+        if self.installation:
             return self.installation.installed()
         return {}
 
@@ -292,7 +307,7 @@ class Package:
     def python_scripts(self) -> "tuple[InstalledFile, ...]":
         """The Python files that a build installs as programs, by their ending or first line."""
         folder = f"lib/{self.name}/"
-        copies = self.installation.copies if self.installation is not None else ()
+        copies = self.installation.copies if self.installation else ()
         return tuple(
             copy
             for copy in copies
@@ -310,7 +325,7 @@ class Package:
     @cached_property
     def known_programs(self) -> "KnownPrograms":
         """The programs that a build installs; of a package with a build file."""
-        assert self.installation is not None
+        assert self.installation
         return self.installation.known_programs()
 
     @cached_property
@@ -321,13 +336,13 @@ class Package:
         """
         from grader.ros.known.ros_machine import ros_machine  # late: a URDF needs no table
 
-        if self.installation is None or self.installation.unknown:
+        if not self.installation or self.installation.unknown:
             return ""
         imported = ros_machine().imported_by_launch
         return next((name for name in self.installation.packages if name in imported), "")
 
     @cached_property
-    def launch_files(self) -> tuple[str, ...]:
+    def launch_files(self) -> Strings:
         """The paths of its launch files.
 
         They are known by their names, or because they are in a folder named launch.
@@ -335,7 +350,7 @@ class Package:
         return tuple(filter(is_launch_file, self.tree.files))
 
     @cached_property
-    def rviz_files(self) -> tuple[str, ...]:
+    def rviz_files(self) -> Strings:
         """The paths of its RViz files."""
         return tuple(path for path in self.tree.files if path.lower().endswith(".rviz"))
 
@@ -361,9 +376,7 @@ class Package:
         if self.tree.links:
             return NotDecided(f"the {word} may be in {self.tree.links[0]}, which {IS_LINK}")
         folder = ""
-        if kind == "launch" and not any(
-            path.rpartition("/")[2] == kind for path in self.tree.folders
-        ):
+        if kind == "launch" and not any(basename(path) == kind for path in self.tree.folders):
             folder = ", and there is no folder launch"
         usual = enumerated(endings[:3], word="or")
         message = f"the package has no {word}: no file ends in {usual}{folder}"
@@ -381,7 +394,7 @@ class Package:
         This mistake is the cause.
         """
         setup = self.installation
-        at = setup.location(setup.called_at) if setup is not None else None
+        at = setup.location(setup.called_at) if setup else None
         return MissingElement(
             "data_files",
             self.folder,
@@ -398,12 +411,12 @@ class Package:
         """
         files = sorted(
             self.launch_files,
-            key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path),
+            key=lambda path: (basename(path) != name, path.count("/"), path),
         )
         named = [path for path in files if is_launch_named(path, name)]
         if named:
             return named[0]
-        names = {path.rpartition("/")[2]: path for path in reversed(files)}
+        names = {basename(path): path for path in reversed(files)}
         stem = launch_stem(name)
         similar = closest(name, names) or next(
             (other for other in names if launch_stem(other) == stem), None
@@ -483,12 +496,12 @@ class Package:
 
     def rviz_file(self, name: str, launch: "Launch | None") -> str | None:
         """Return the RViz file that the launch file opens; else the one of this name; else any."""
-        opened = self.rviz_opened(launch) if launch is not None else None
+        opened = self.rviz_opened(launch) if launch else None
         if opened:
             return opened
         return min(
             self.rviz_files,
-            key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path),
+            key=lambda path: (basename(path) != name, path.count("/"), path),
             default=None,
         )
 
@@ -497,10 +510,9 @@ class Package:
 
         Without such a file, it is the package itself.
         """
-        paths = [reference.path for reference in launch.named("rviz") if reference.path is not None]
-        owners = [self, *(self.find(share_parts(path)[0]) for path in paths)]
+        owners = [self, *(self.find(share_parts(path)[0]) for path in launch.rviz_paths)]
         for owner in owners:
-            if owner is not None and owner.rviz_opened(launch) is not None:
+            if owner and owner.rviz_opened(launch) is not None:
                 return owner
         return self
 
@@ -509,14 +521,13 @@ class Package:
 
         A wrong folder is another error.
         """
-        paths = [reference.path for reference in launch.named("rviz") if reference.path is not None]
-        for path in paths:
+        for path in launch.rviz_paths:
             source = self.find_source(path)
             if source in self.rviz_files:
                 return source
-        names = {path.rpartition("/")[2] for path in paths}
+        names = {basename(path) for path in launch.rviz_paths}
         for path in self.rviz_files:
-            if path.rpartition("/")[2] in names:
+            if basename(path) in names:
                 return path
         return None
 
@@ -573,9 +584,9 @@ class Package:
         from grader.ros.known.package_rows import lacks_program  # late: as above
 
         owner = self.find(package)
-        if owner is None:
+        if not owner:
             return not lacks_program(package, name)
-        if owner.installation is not None:
+        if owner.installation:
             return owner.installation.has_program(name, package, owner.known_programs)
         return None
 
@@ -586,14 +597,14 @@ class Package:
         """
         owner = self.find(folder.removeprefix("share/").partition("/")[0])
         if (
-            owner is None
+            not owner
             or owner.installation is None
             or owner.installation.fault
             or owner.installation.unknown
         ):
             return None
         return tuple(
-            path.rpartition("/")[2] for path in owner.installed if path.rpartition("/")[0] == folder
+            basename(path) for path in owner.installed if path.rpartition("/")[0] == folder
         )
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
@@ -607,3 +618,6 @@ class Package:
                     source = package.installed[path]
                     return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
         return None
+
+
+Packages = tuple[Package, ...]

@@ -3,8 +3,8 @@
 import posixpath
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import chain
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.ros.interfaces.interface_file import INTERFACE_ENDINGS, read_interface
 from grader.ros.interfaces.interface_types import Interface
@@ -15,14 +15,14 @@ _MAX_FILE = 32 * 1024  # bytes
 _BYTES_A_PART = 8
 
 
-class _OwnInterface(NamedTuple):
+class _OwnInterface(Named):
     """A message, service or action of a package, and the path of its file in the workspace."""
 
     interface: Interface
     path: str
 
 
-class PackageInterfaces(NamedTuple):
+class PackageInterfaces(Named):
     """The messages, services and actions of a package by their names, msg.Twist.
 
     Without `is_complete`, the package may have more of them.
@@ -39,11 +39,11 @@ class PackageInterfaces(NamedTuple):
 def read_interfaces(package: Package) -> PackageInterfaces:
     """Return the messages, services and actions of a package. It never raises."""
     setup = package.installation
-    if setup is None or setup.fault is not None:
+    if not setup or setup.fault:
         return PackageInterfaces(is_complete=False)
     files = _interface_files(package)
     calls = setup.interfaces
-    paths = [*chain.from_iterable(call.files[:_MAX_FILES] for call in calls)]
+    paths = list(chain.from_iterable(call.files[:_MAX_FILES] for call in calls))
     types, are_all_read = _read_types(package, paths)
     dependencies = frozenset(chain.from_iterable(call.dependencies for call in calls))
     return PackageInterfaces(
@@ -72,14 +72,14 @@ def _name_others(
 def _are_files_certain(package: Package, files: Collection[str]) -> bool:
     """Return whether all interfaces of a package are certainly made of these files."""
     setup = package.installation
-    if setup is None or setup.doubt is not None or len(files) > _MAX_FILES:
+    if not setup or setup.doubt or len(files) > _MAX_FILES:
         return False
     return all(call.is_certain for call in setup.interfaces) and not _has_modules(package)
 
 
 def _read_types(package: Package, paths: Iterable[str]) -> tuple[dict[str, _OwnInterface], bool]:
     """Return the interfaces in files of a package by their names, and whether all are read."""
-    types: dict[str, _OwnInterface] = {}
+    types = {}
     is_complete = True
     for path in paths:
         if not path.endswith(INTERFACE_ENDINGS):

@@ -1,7 +1,9 @@
 """The names of a package's programs, and the one that another name may mean."""
 
 from collections.abc import Sequence
+from posixpath import basename
 
+from grader.base.grouping import only_one
 from grader.base.names import closest, near
 from grader.ros.package.entry_points import entry_points
 from grader.ros.package.package import Package
@@ -9,12 +11,13 @@ from grader.ros.package.package import Package
 
 def program_names(package: Package) -> list[str]:
     """Return the programs that ros2 run finds in a package, and its entry points."""
-    setup, home = package.installation, f"lib/{package.name}"
+    setup = package.installation
+    home = f"lib/{package.name}"
     names = {entry.name for entry in entry_points(package)}
-    if setup is not None:
+    if setup:
         for path in (*setup.programs, *(copy.target for copy in setup.copies)):
             if path.startswith(f"{home}/"):
-                names.add(path.rpartition("/")[2])
+                names.add(basename(path))
     return sorted(names)
 
 
@@ -30,7 +33,7 @@ def program_of_module(package: Package, name: str) -> str | None:
         for entry in entry_points(package)
         if entry.module.split(".")[-1] == name.removesuffix(".py")
     }
-    return programs.pop() if len(programs) == 1 else None
+    return only_one(programs)
 
 
 def surely_meant_program(package: Package, name: str) -> str | None:

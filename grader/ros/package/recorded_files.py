@@ -19,7 +19,8 @@ class RecordedFiles:
     """
 
     def __init__(self, answers: Answers[SurroundingFiles], budget: Budget) -> None:
-        self._answers, self.budget = answers, budget
+        self._answers = answers
+        self.budget = budget
 
     @property
     def paths(self) -> Collection[str]:
@@ -54,7 +55,7 @@ class RecordedFiles:
 
     def _try(self, question: Callable[[SurroundingFiles], _T]) -> _T:
         """Return the answer to a question, or raise what it raises, which is recorded too."""
-        raised: list[Exception] = []
+        raised = []
 
         def ask(files: SurroundingFiles) -> _T | tuple[type, str]:
             try:

@@ -1,7 +1,8 @@
 """What two readings of a robot's files are compared by."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from grader.base.records import Named
 from grader.ros.xml.elements import text_in
 from grader.ros.xml.urdf_format import CHILDREN
 
@@ -12,7 +13,7 @@ if TYPE_CHECKING:
 RobotFaults = tuple[tuple[int, int], int]  # refusals, with consequences, and dropped parts
 
 
-class RobotState(NamedTuple):
+class RobotState(Named):
     """What is wrong with a robot, and what it is."""
 
     refusals: tuple[int, int]  # reasons for which xacro or ROS 2 refuses it, and their consequences
@@ -32,9 +33,10 @@ def make_state(reading: "Reading") -> RobotState:
     rejecting = [kind for kind in kinds if kind.effect == "rejects"]
     refusals = [kind for kind in rejecting if not kind.is_consequence]
     dropped = [kind for kind in kinds if kind.effect == "drops" and not kind.is_consequence]
-    robot, root = reading.robot, reading.elements
+    robot = reading.robot
+    root = reading.elements
     content: list[object] = []
-    if robot is not None and root is not None:
+    if robot and root is not None:
         content = [sorted(map(repr, robot.links)), sorted(map(repr, robot.joints))]
         for child in root:
             if child.tag not in CHILDREN["robot"]:

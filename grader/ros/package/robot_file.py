@@ -3,22 +3,25 @@
 It has one of three states.
 """
 
-import posixpath
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
-from typing import TYPE_CHECKING, NamedTuple, cast
+from posixpath import basename, dirname
+from typing import TYPE_CHECKING, cast
 
 from grader.base.errors import InputError, MissingElement, NotDecided
+from grader.base.grouping import known_values
+from grader.base.patterns import on_use
 from grader.base.problems import Problem
+from grader.base.records import Named
 from grader.base.reuse import Answers, Memory
 from grader.base.slips import Slip
 from grader.base.source import Edits, Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree, parents
 from grader.ros.known.releases import Release
-from grader.ros.package.package import Package
+from grader.ros.package.package import Package, Packages
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import Undetermined
 from grader.ros.urdf.reader import Reading, find_xacro, read_robot, read_urdf
@@ -38,11 +41,11 @@ if TYPE_CHECKING:
 
 _MAX_FOLDERS = 40  # whose launch files are read
 # What may be a slip although it is no problem of a URDF: text, CDATA, xacro, words of SDF.
-_NO_PROBLEM = re.compile(r">\s*+(?!-->)[^\s<]|<!(?!--)|[${]|xacro:|<gazebo")
+_NO_PROBLEM = on_use(r">\s*+(?!-->)[^\s<]|<!(?!--)|[${]|xacro:|<gazebo")
 _NO_FILES = make_tree("", (), ())
 
 
-class OtherCandidate(NamedTuple):
+class OtherCandidate(Named):
     """A file that could have been graded, and why another one is."""
 
     path: str
@@ -61,15 +64,20 @@ class Absent:
     def __init__(self, blank: str = "") -> None:
         self.blank = blank
 
+    @property
+    def reason(self) -> str:
+        """Why there is no robot."""
+        return "the URDF is empty" if self.blank else "no URDF was submitted"
 
-class Unreadable(NamedTuple):
+
+class Unreadable(Named):
     """The URDF is too large or damaged; `reason` is a sentence that names the file."""
 
     path: str
     reason: str
 
 
-class Read(NamedTuple):
+class Read(Named):
     """The URDF was read, even if ROS 2 rejects it.
 
     `reading` is of the expanded text if it is xacro.
@@ -95,7 +103,7 @@ class Read(NamedTuple):
     def source(self) -> Source:
         """The text that the student wrote."""
         if self.is_expanded:
-            return Source(self.path, self.data.decode("utf-8", "replace"))
+            return Source.decoded(self.path, self.data)
         return self.reading.source
 
     @property
@@ -104,7 +112,7 @@ class Read(NamedTuple):
 
         For xacro that is loaded without xacro, these are the problems of the expanded text.
         """
-        if self.as_it_stands is None:
+        if not self.as_it_stands:
             return self.reading.problems
         raw = [problem for problem in self.as_it_stands.problems if problem.kind is RAW_XACRO]
         return (*raw, *self.reading.problems)
@@ -133,7 +141,7 @@ class Read(NamedTuple):
             refused = expanded.refused
             for source in expanded.texts_of_files:
                 texts.setdefault(source.path, source)
-        return list_choices([*texts.values()], refused, self.reading.fixes)
+        return list_choices(list(texts.values()), refused, self.reading.fixes)
 
     @property
     def slips(self) -> list[Slip]:
@@ -156,7 +164,7 @@ class Read(NamedTuple):
 Urdf = Absent | Unreadable | Read
 
 
-class Surroundings(NamedTuple):
+class Surroundings(Named):
     """The files and packages around a URDF, as launch files and xacro find them.
 
     This is the Workspace of xacro.
@@ -165,7 +173,7 @@ class Surroundings(NamedTuple):
     budget: Budget  # of what is expanded and evaluated
     tree: Tree = _NO_FILES
     graded: Package | None = None
-    packages: tuple[Package, ...] = ()
+    packages: Packages = ()
     arguments: Mapping[str, str] = {}  # that the user gives xacro
     launch_arguments: Mapping[
         str, str
@@ -188,7 +196,7 @@ class Surroundings(NamedTuple):
         return [
             reference
             for package in around
-            for reference in package.robot_references(path.rpartition("/")[2])
+            for reference in package.robot_references(basename(path))
         ]
 
     def runs_xacro_beside(self, path: str) -> bool:
@@ -198,10 +206,10 @@ class Surroundings(NamedTuple):
         """
         from grader.ros.package.made_paths import made_paths  # late: few robots need it
 
-        folder = posixpath.basename(posixpath.dirname(path))
+        folder = basename(dirname(path))
         for launch in chain.from_iterable(package.launches for package in self.packages):
             for file in launch.named("urdf"):
-                beside = posixpath.basename(posixpath.dirname(file.path or ""))
+                beside = basename(dirname(file.path or ""))
                 if file.by == "xacro" and file.path is not None and beside == folder:
                     return True
             is_run = "xacro" in launch.source.text
@@ -241,10 +249,10 @@ class Surroundings(NamedTuple):
         )
 
     def _launched_packages(self, path: str) -> list[Package]:
-        if self.graded is None:
+        if not self.graded:
             loose = launch_folders(self.tree, self.packages, [path] if not self.is_single else [])
             return [reference.under(self.launch_arguments) for reference in loose]
-        name = path.rpartition("/")[2]
+        name = basename(path)
         if self.graded.robot_references(name):
             return [self.graded]
         owner = next((package for package in self.packages if package.holds(path)), self.graded)
@@ -284,7 +292,7 @@ class Surroundings(NamedTuple):
     def read(self, path: str) -> bytes:
         """Return the bytes of a file. Raises InputError, NotDecided."""
         file = self.tree.files.get(path)
-        if file is None:
+        if not file:
             raise self._error_of_missing(path)
         try:
             return file.read(URDF_LIMIT)
@@ -294,7 +302,7 @@ class Surroundings(NamedTuple):
     def _error_of_missing(self, path: str) -> Exception:
         """Return why a file is not there: NotDecided if it may only not be submitted."""
         ignored = next((other for other in self.tree.ignored if other.path == path), None)
-        if ignored is not None:
+        if ignored:
             return NotDecided(str(ignored))
         if not self.tree.files:
             return NotDecided(
@@ -313,7 +321,7 @@ class Surroundings(NamedTuple):
 
         Without any package, return the most similar path.
         """
-        owners = [*self._named(package)]
+        owners = list(self._named(package))
         if owners:
             return self._installed_by(owners[0], package, inside)
         if self.packages:
@@ -330,11 +338,12 @@ class Surroundings(NamedTuple):
         """Return the file that a build of a package installs at a path in the share folder."""
         if self.assumes_defaults and inside in owner.tree.files:
             return owner.path(inside)
-        source, setup = owner.installed.get(f"share/{package}/{inside}"), owner.installation
+        source = owner.installed.get(f"share/{package}/{inside}")
+        setup = owner.installation
         if source is not None:
             return owner.path(source)
         is_similar = any(f"/{path}".endswith(f"/{inside}") for path in owner.tree.files)
-        if is_similar and setup is not None and setup.is_cmake and setup.unknown:
+        if is_similar and setup and setup.is_cmake and setup.unknown:
             raise Undetermined(
                 f"cannot determine statically whether CMakeLists.txt installs {inside}"
             )
@@ -379,10 +388,10 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
         expanded = _expanded(data, path, surroundings, launched)
         return Read(path, data, expanded, is_expanded=True, has_xacro=True)
     reading = read_urdf(data, path, releases)
-    if reading.raw_xacro is None:
+    if not reading.raw_xacro:
         return Read(path, data, reading, has_xacro=True)
     expanded = _expand_xacro(data, path, surroundings, [])
-    if expanded.robot is None:
+    if not expanded.robot:
         return Read(path, data, reading, has_xacro=True)
     if reading.verdict == "clean":
         if _loaded_model(reading) == _loaded_model(expanded):
@@ -399,7 +408,7 @@ def _is_run_by_xacro(
     programs = {reference.by for reference in launched}
     if programs:
         return programs == {"xacro"}
-    name = path.rpartition("/")[2].lower()
+    name = basename(path).lower()
     # Nothing loads a file of another name as a URDF; standard input is one.
     if ".xacro" in name or (".urdf" not in name and name != "-"):
         return True
@@ -409,7 +418,7 @@ def _is_run_by_xacro(
 def _loaded_model(reading: Reading) -> tuple[object, ...]:
     """Return the links, shapes and joints that ROS 2 loads, without the masses: RViz needs none."""
     robot = reading.robot
-    if robot is None:
+    if not robot:
         return ()
     links = {link.name: (link.visuals, link.collisions) for link in robot.links}
     return links, {joint.name: joint for joint in robot.joints}
@@ -452,11 +461,11 @@ def _expand_xacro(
 
     launched = dict(references[0].arguments) if references else {}
     if surroundings.assumes_defaults:
-        launched = {name: text for name, text in launched.items() if text is not None}
+        launched = known_values(launched)
     given = dict(launched)
     for name, text in launched.items():
         shared = re.fullmatch(rf"{SHARE}/([^/]+)/?(.*)", text or "")
-        if shared is None:
+        if not shared:
             continue
         package, inside = shared.groups()
         is_known = not inside or surroundings.package(package) is None
@@ -467,7 +476,7 @@ def _expand_xacro(
     arguments = {**surroundings.launch_arguments, **given, **surroundings.arguments}
     others = surroundings.other_arguments(path, references)
     key = (data, path, tuple(arguments.items()), others, newest_version(surroundings.releases))
-    if surroundings.memory is None:
+    if not surroundings.memory:
         return _read_expanded(*key, surroundings)
 
     from grader.ros.package.recorded_files import RecordedFiles  # late: only editors read twice

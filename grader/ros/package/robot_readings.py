@@ -4,7 +4,7 @@ What is written can stand for one thing only if no other way to read it gives an
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 
 from grader.base.element_edits import edit_files, edits_before
 from grader.base.problems import Fixes, Problem, causes, in_order
@@ -63,11 +63,16 @@ class RobotReadings:
     """
 
     def __init__(self, urdf: Read, surroundings: Surroundings) -> None:
-        self._written, self._surroundings = urdf, surroundings
+        self._written = urdf
+        self._surroundings = surroundings
         self.chosen = urdf  # with the slips that were chosen
-        self._state = urdf.state
         self._edits: Edits = ()
         self._left = _MAX_READINGS
+
+    @cached_property
+    def _state(self) -> RobotState:
+        """What is wrong with the robot with the slips that were chosen; few robots have any."""
+        return self._written.state
 
     def find_slips(self) -> list[Slip]:
         """Return the slips that can be read in one way only, each tried on top of those before it.
@@ -80,7 +85,7 @@ class RobotReadings:
             before = len(self._edits)
             for choice in self._choices():
                 slip = self._choose(choice) if self._left > 0 else None
-                if slip is not None:
+                if slip:
                     _add_slip(slips, slip)
             if len(self._edits) == before:
                 break
@@ -93,7 +98,7 @@ class RobotReadings:
         """
         earlier = self._edits
         for choice in self.chosen.slip_choices:
-            ways: list[Slip] = []
+            ways = []
             for slip in choice:
                 edits = edits_before(self._content, earlier, slip.edits)
                 if edits is not None:
@@ -110,8 +115,8 @@ class RobotReadings:
         fewest = self._state.faults
         for slip in choice:
             read = self._read(slip)
-            state = read.state if read is not None else None
-            if read is None or state is None or not self._is_better(slip, state, fewest):
+            state = read.state if read else None
+            if not read or not state or not self._is_better(slip, state, fewest):
                 continue
             if state.faults < fewest:
                 fewest = state.faults
@@ -139,7 +144,7 @@ class RobotReadings:
     def _read(self, slip: Slip) -> Read | None:
         """Return the robot with a slip corrected; None if the edits do not fit."""
         self._left -= 1
-        files = edit_files(self._content, (*self._edits, *slip.edits))
+        files = edit_files(self._content, self._edits + slip.edits)
         if files is None:
             return None
         return read_edited(self._written, self._surroundings, files)
@@ -156,7 +161,7 @@ def _add_slip(slips: list[Slip], slip: Slip) -> None:
     for index, earlier in enumerate(slips):
         if not places.isdisjoint(edit.location for edit in earlier.edits):
             assumption = f"{earlier.assumption} and {slip.assumption}"
-            edits = (*earlier.edits, *slip.edits)
+            edits = earlier.edits + slip.edits
             slips[index] = earlier._replace(edits=edits, assumption=assumption)
             return
     slips.append(slip)

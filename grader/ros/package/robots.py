@@ -5,9 +5,11 @@ Nothing is parsed.
 
 import re
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from posixpath import basename
 
 from grader.base.errors import InputError
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import File, Tree
 
@@ -18,7 +20,7 @@ _MAX_ROBOTS = 400  # found by their content alone
 
 # What may come before the first element of XML, also where a declaration ends in > instead of ?>.
 # Possessive: always linear.
-_PROLOG = re.compile(
+_PROLOG = on_use(
     rb"""
     (?:\xef\xbb\xbf)?                             # the byte-order mark that Windows editors write
     (?>
@@ -30,11 +32,11 @@ _PROLOG = re.compile(
     """,
     re.DOTALL | re.IGNORECASE | re.VERBOSE,
 )
-_ROBOT = re.compile(rb"<\s*robot(?=[\s/>])([^<>]*)")
-_NAME = re.compile(rb"(?<![\w:])name\s*=\s*[\"']([^\"']*)")
-_COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
-_INCLUDE = re.compile(rb"<xacro:include\s[^<>]*filename\s*=\s*[\"'](?:[^\"']*/)?([^\"'/]+)[\"']")
-_LIKELY = re.compile("urdf|xacro|robot")  # in names of files that are read first
+_ROBOT = on_use(rb"<\s*robot(?=[\s/>])([^<>]*)")
+_NAME = on_use(rb"(?<![\w:])name\s*=\s*[\"']([^\"']*)")
+_COMMENT = on_use(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
+_INCLUDE = on_use(rb"<xacro:include\s[^<>]*filename\s*=\s*[\"'](?:[^\"']*/)?([^\"'/]+)[\"']")
+_LIKELY = on_use("urdf|xacro|robot")  # in names of files that are read first
 # Files that are no text, and need not be read.
 _BINARY = frozenset(
     {
@@ -91,7 +93,7 @@ _BINARY = frozenset(
 )
 
 
-class RobotFile(NamedTuple):
+class RobotFile(Named):
     """A file that may be graded as the URDF: it is called .urdf, or its first element is <robot>.
 
     `robot` is the name of the robot, and `includes` are the names of the files that it includes, as
@@ -107,7 +109,7 @@ class RobotFile(NamedTuple):
     @property
     def name(self) -> str:
         """The last part of its path."""
-        return self.path.rpartition("/")[2]
+        return basename(self.path)
 
 
 def find_robots(
@@ -115,19 +117,26 @@ def find_robots(
 ) -> tuple[RobotFile, ...]:
     """Return the files of a tree that may be the URDF.
 
-    A file called `urdf_name` is among them whatever it contains.
+    A file called `urdf_name` is among them whatever it contains, and one of xacro that cannot be
+    read.
 
     Of other files only those of at most `max_size` bytes are read, and of these the first bytes.
     """
-    robots: list[RobotFile] = []
+    robots = []
     by_content = read = 0
     for file in _list_candidates(tree):
         is_urdf = file.suffix == ".urdf" or file.name == urdf_name
         is_read = read < _MAX_READ and by_content < _MAX_ROBOTS
-        if not is_urdf and (not is_read or file.suffix in _BINARY or not 0 < file.size <= max_size):
+        most = file.size if file.suffix == ".xacro" else max_size
+        if not is_urdf and (not is_read or file.suffix in _BINARY or not 0 < file.size <= most):
             continue
         read += 1
-        start = _robot_start(file) if is_read else None
+        start = None
+        if is_read:
+            try:
+                start = _robot_start(file)
+            except InputError:  # it is damaged
+                is_urdf = is_urdf or file.suffix == ".xacro"
         if start:
             by_content += not is_urdf
             name_and_includes = _name_and_includes(start)
@@ -171,15 +180,12 @@ def list_parts(robots: Sequence[RobotFile]) -> frozenset[str]:
 def _robot_start(file: File) -> bytes | None:
     """Return the beginning of a file from its <robot> on, a longer one of xacro.
 
-    Returns None if another element is first.
+    Returns None if another element is first. Raises InputError if it cannot be read.
     """
     if not file.size:
         return None
     for count in (_START, _LONG_START):
-        try:
-            data = file.read(count, first=True)
-        except InputError:
-            return None
+        data = file.read(count, first=True)
         end = _end_of_prolog(data)
         if _ROBOT.match(data, end):
             if count < _LONG_START and len(data) == count and b"xacro:" in data:
@@ -193,15 +199,13 @@ def _robot_start(file: File) -> bytes | None:
 
 def _end_of_prolog(data: bytes) -> int:
     match = _PROLOG.match(data)
-    return match.end() if match is not None else 0
+    return match.end() if match else 0
 
 
 def _name_and_includes(start: bytes) -> tuple[str, frozenset[str]]:
     tag = _ROBOT.match(start)
-    name = _NAME.search(tag[1]) if tag is not None else None
+    name = _NAME.search(tag[1]) if tag else None
     includes = (
         include.decode("utf-8", "replace") for include in _INCLUDE.findall(_COMMENT.sub(b"", start))
     )
-    return name[1].decode("utf-8", "replace").strip() if name is not None else "", frozenset(
-        includes
-    )
+    return name[1].decode("utf-8", "replace").strip() if name else "", frozenset(includes)

@@ -3,11 +3,12 @@
 It is started as the launch files of a package start it.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from math import hypot, isfinite
-from typing import NamedTuple
 
+from grader.base.grouping import StringsByName
+from grader.base.records import Named
 from grader.base.source import LazyLocation, Source, SourceOf
 from grader.base.transforms import Transform, Vector, rotation_from_quaternion
 from grader.ros.launch.launch_model import Launch, StartedNode
@@ -17,11 +18,9 @@ from grader.ros.urdf.model import Joint, Link, Origin, Robot, UnresolvedPart
 from grader.ros.urdf.numbers import finite_number
 
 STATIC_PUBLISHER = ("tf2_ros", "static_transform_publisher")
-_PLACE, _RPY, _QUATERNION = (
-    ("--x", "--y", "--z"),
-    ("--roll", "--pitch", "--yaw"),
-    ("--qx", "--qy", "--qz", "--qw"),
-)
+_PLACE = ("--x", "--y", "--z")
+_RPY = ("--roll", "--pitch", "--yaw")
+_QUATERNION = ("--qx", "--qy", "--qz", "--qw")
 _FRAMES = ("--frame-id", "--child-frame-id")
 _BY_POSITION = {  # the words without options: with yaw, pitch and roll, or with a quaternion
     8: (*_PLACE, *reversed(_RPY), *_FRAMES),
@@ -30,7 +29,7 @@ _BY_POSITION = {  # the words without options: with yaw, pitch and roll, or with
 _NORM_TOLERANCE = 10e-3  # of a quaternion; tf2 ignores others
 
 
-class _StaticFrame(NamedTuple):
+class _StaticFrame(Named):
     """A frame that a launch file places.
 
     It is `open`, for a reason, where it is not known whether and where.
@@ -83,11 +82,12 @@ def _with_frames(
     source_of: SourceOf,
 ) -> Robot:
     """Return a robot with the frames that one launch file publishes."""
-    if launch.syntax is not None or launch.faults:
+    if launch.syntax or launch.faults:
         return robot  # nothing is published
-    frames = [_read_frame(node, source_of) for node in launch.nodes if _publishes_frame(node)]
+    publishers = [node for node in launch.nodes if node.program == STATIC_PUBLISHER]
+    frames = [_read_frame(node, source_of) for node in publishers if node.when is not False]
     for frame in frames:
-        if frame is not None and frame.child not in roots:
+        if frame and frame.child not in roots:
             robot = _add_frame(robot, frame)
     reason = _why_frames_unknown(launch, frames)
     if not reason:
@@ -105,11 +105,6 @@ def _why_frames_unknown(launch: Launch, frames: Sequence[_StaticFrame | None]) -
     if None in frames:
         return "the name of a frame is not evaluated"
     return ""
-
-
-def _publishes_frame(node: StartedNode) -> bool:
-    is_publisher = (node.package, node.executable) == STATIC_PUBLISHER
-    return is_publisher and node.when is not False
 
 
 def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
@@ -130,9 +125,9 @@ def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
         (robot_joint for robot_joint in robot.joints if robot_joint.known.child == frame.child),
         None,
     )
-    if before is None and robot.has_link(frame.child):
+    if not before and robot.has_link(frame.child):
         return robot
-    if before is None:
+    if not before:
         return replace(
             robot,
             links=(*robot.links, Link(frame.child, location=frame.location)),
@@ -172,9 +167,8 @@ def _read_frame(node: StartedNode, source_of: SourceOf) -> _StaticFrame | None:
         what = "whether it is published" if node.when is None else "its place"
         reason = f"{what} is known only at run time ({at.path}, line {at.line})"
         return _StaticFrame(parent, child, None, location, f"the frame {child!r}: {reason}")
-    options = {name: text or "" for name, text in _read_options(words).items()}
-    origin = _make_origin(options, location)
-    if not parent or origin is None:
+    origin = _make_origin(words, location)
+    if not parent or not origin:
         child = ""
     return _StaticFrame(parent, child, origin, location)
 
@@ -206,9 +200,8 @@ def static_pose(node: StartedNode) -> Transform | None:
         return None
     at = node.location
     location = LazyLocation(Source(at.path, "", [0]), 0)
-    options = {name: text or "" for name, text in _read_options(words).items()}
-    origin = _make_origin(options, location)
-    return origin.placed_in() if origin is not None else None
+    origin = _make_origin(words, location)
+    return origin.placed_in() if origin else None
 
 
 def has_zero_rotation(node: StartedNode) -> bool:
@@ -225,11 +218,12 @@ def _read_options(words: Sequence[str | None]) -> dict[str, str | None]:
     return dict(zip(_BY_POSITION.get(len(words), ()), words, strict=False))
 
 
-def _make_origin(options: Mapping[str, str], location: LazyLocation) -> Origin | None:
-    """Return where a frame is placed.
+def _make_origin(words: Sequence[str | None], location: LazyLocation) -> Origin | None:
+    """Return where known words place a frame.
 
     Returns None where the publisher ends with an error, or tf2 ignores the transform.
     """
+    options = {name: text or "" for name, text in _read_options(words).items()}
     values = _read_values(options)
     if values is None:
         return None
@@ -243,7 +237,7 @@ def _make_origin(options: Mapping[str, str], location: LazyLocation) -> Origin |
     return None
 
 
-def _read_values(options: Mapping[str, str]) -> dict[str, float] | None:
+def _read_values(options: StringsByName) -> dict[str, float] | None:
     """Return the numbers of options; None where the publisher ends with an error."""
     try:
         values = {name: float(text) for name, text in options.items() if name not in _FRAMES}

@@ -9,13 +9,14 @@ takes the entries with this value.
 """
 
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.names import similar_there
+from grader.base.patterns import on_use
 from grader.base.source import LazyLocation, Location, Source
 from grader.ros.known.gazebo_rows import gazebo
 from grader.ros.known.releases import Release
@@ -29,8 +30,8 @@ if TYPE_CHECKING:
 
 _MAX_TREE = 512 * 1024  # bytes
 _YAML = (".yaml", ".yml", ".rviz", ".repos", ".json")  # other files are XML
-_STEP = re.compile(r"""([^\[\]]*)((?:\[[^\[\]=]+=(?:'[^']*'|"[^"]*"|[^\[\]'"]*)\])*)""")
-_CONDITION = re.compile(r"""\[([^\[\]=]+)=(?:'([^']*)'|"([^"]*)"|([^\[\]'"]*))\]""")
+_STEP = on_use(r"""([^\[\]]*)((?:\[[^\[\]=]+=(?:'[^']*'|"[^"]*"|[^\[\]'"]*)\])*)""")
+_CONDITION = on_use(r"""\[([^\[\]=]+)=(?:'([^']*)'|"([^"]*)"|([^\[\]'"]*))\]""")
 _MAX_LOOKED_AT = 200_000  # entries, by one search
 _EXACT = 1e-6  # of numbers in conditions
 _Place = Location | LazyLocation
@@ -97,7 +98,7 @@ def split_path(path: str, *, is_xml: bool) -> list[PathStep]:
     steps = []
     for part in parts if path not in ("", ".") else ():
         match = _STEP.fullmatch(part)
-        if match is not None and part not in ("", "."):
+        if match and part not in ("", "."):
             conditions = []
             for key, quoted, double_quoted, plain in _CONDITION.findall(match[2]):
                 conditions.append((key, quoted or double_quoted or plain))
@@ -127,7 +128,7 @@ class Search:
         Raises NotDecided for too many.
         """
         try:
-            return [*self._find(entry, steps)]
+            return list(self._find(entry, steps))
         except OutOfBudget:
             raise NotDecided("the file has too many entries to look through") from None
 
@@ -177,7 +178,8 @@ def xml_entry(
     In a sensor of Gazebo, a word stands for another one that the Gazebo of these releases reads as
     the same, and a topic for itself with and without a slash, since there are no namespaces.
     """
-    name, text = read_name(element), text_in(element)
+    name = read_name(element)
+    text = text_in(element)
     is_topic = name == "topic" and _is_sensor(element.getparent())
     return TreeEntry(
         name,
@@ -206,8 +208,8 @@ def _list_xml_children(
         TreeEntry(f"@{name}", value, list, partial(locate, element, name), is_xml=True)
         for name, value in list_attributes(element)
     ]
-    children = [*element.iterchildren("*")]
-    names: Mapping[str, str] = {}
+    children = list(element.iterchildren("*"))
+    names = {}
     if _is_sensor(element):
         kind = next((entry.text or "" for entry in attributes if entry.name == "@type"), "")
         names = _meant_elements(kind, {read_name(child) for child in children}, releases)
@@ -284,7 +286,8 @@ def read_tree(package: Package, file: str) -> TreeEntry:
             "several files have the name",
         )
     if not matches:
-        message, meant = f"the package has no file {file!r}", similar_there(file, files)
+        message = f"the package has no file {file!r}"
+        meant = similar_there(file, files)
         raise MissingElement(
             "file", file, message=message, detail=meant, absent="" if meant else file
         )
@@ -308,5 +311,5 @@ def read_tree(package: Package, file: str) -> TreeEntry:
 
 
 def _read_xml(data: bytes, path: str, releases: Sequence[Release]) -> TreeEntry:
-    file = XmlFile(data, Source(path, data.decode("utf-8", "replace")))
+    file = XmlFile(data, Source.decoded(path, data))
     return xml_entry(file.root, file.location, releases)

@@ -3,6 +3,8 @@
 import ast
 from collections.abc import Iterable, Sequence
 
+from grader.base.text import first_part
+
 
 def bound_names(node: ast.AST) -> Sequence[str]:
     """Return the names that one node binds. An attribute or an item is changed, not bound."""
@@ -16,7 +18,7 @@ def bound_names(node: ast.AST) -> Sequence[str]:
         case ast.MatchStar(name=str(name)) | ast.MatchMapping(rest=str(name)):
             return [name]
         case ast.alias(name=full, asname=asname):
-            return [asname or full.partition(".")[0]]
+            return [asname or first_part(full)]
     return []
 
 

@@ -3,32 +3,50 @@
 from collections.abc import Collection, Iterable, Iterator
 from pathlib import PurePosixPath
 
-from grader.ros.python import values as py
-from grader.ros.python.values import list_parts, refuse, too_large
+from grader.ros.python.values import (
+    MAX_BITS,
+    MAX_PARTS,
+    MAX_TEXT,
+    OPAQUE,
+    PLAIN,
+    SCALARS,
+    EvaluationSignal,
+    Items,
+    Namespace,
+    PlainFunction,
+    Undetermined,
+    Value,
+    is_object,
+    iterate,
+    list_parts,
+    refuse,
+    too_large,
+)
 
 READING = 500_000  # parts that reading one workspace may produce or look at: some 0.5 s
-# Parts that reading all files of a workspace and comparing their names may take, besides one for
-# each byte of text: what is large is no attack.
+# Parts that reading all files of a workspace and comparing their names may take, besides those for
+# each package and one for each byte of text: what is large is no attack.
 _OF_WORKSPACE = 400_000
+_OF_PACKAGE = 10_000
 PYTHON_LIMIT = 128 * 1024  # bytes of a file; a syntax tree takes several hundred times as much
 _MAX_TEXT = 512 * 1024  # bytes of a text that count
 CHARACTERS, _BITS = 16, 256  # that count as one part
 _FOLDER = "the name of a folder on the machine is not known"
 
 
-class OutOfBudget(py.EvaluationSignal):
+class OutOfBudget(EvaluationSignal):
     """The budget of a workspace is spent: nothing more of it can be expanded or evaluated."""
 
 
-def _is_of_size_one(part: py.Value, kind: str) -> bool:
+def _is_of_size_one(part: Value, kind: str) -> bool:
     """Return whether a part counts as one, whatever it is, where values of a kind may be."""
-    if isinstance(part, py.PLAIN):
+    if isinstance(part, PLAIN):
         return True
     # A plain function itself refuses the latter.
     return (
-        (kind == "text" and py.is_object(part))
-        or (kind == "holds" and isinstance(part, (*py.OPAQUE, set)))
-        or isinstance(part, py.Items | py.Namespace | py.PlainFunction)
+        (kind == "text" and is_object(part))
+        or (kind == "holds" and isinstance(part, (*OPAQUE, set)))
+        or isinstance(part, Items | Namespace | PlainFunction)
     )
 
 
@@ -71,7 +89,7 @@ class Budget:
         """Charge parts and characters. Raises OutOfBudget."""
         parts += characters // CHARACTERS
         self.left -= parts
-        if self.whole is not None:
+        if self.whole:
             self.whole.left -= parts
         if self.is_spent:
             raise OutOfBudget(
@@ -85,7 +103,7 @@ class Budget:
 
     def _take(self, parts: int, of_whole: int) -> None:
         self.left -= parts
-        if self.whole is not None:
+        if self.whole:
             self.whole.left -= of_whole
 
     def mark(self) -> tuple[int, int]:
@@ -94,7 +112,7 @@ class Budget:
         What is set apart counts as left.
         """
         whole = self.whole
-        return self.left + self.apart, whole.left + whole.apart if whole is not None else 0
+        return self.left + self.apart, whole.left + whole.apart if whole else 0
 
     def set_apart(self, cost: tuple[int, int]) -> None:
         """Leave work out of the marks that was charged, as two of them tell.
@@ -102,7 +120,7 @@ class Budget:
         Who asks first has it done for all others, so it is no part of what else is done then.
         """
         self.apart += cost[0]
-        if self.whole is not None:
+        if self.whole:
             self.whole.apart += cost[1]
 
     def repeat(self, cost: tuple[int, int]) -> bool:
@@ -111,36 +129,37 @@ class Budget:
         Returns whether it was left.
         """
         cost_here, of_whole = cost
-        if cost_here > self.left or (self.whole is not None and of_whole > self.whole.left):
+        if cost_here > self.left or (self.whole and of_whole > self.whole.left):
             return False
         self._take(cost_here, of_whole)
         self.set_apart(cost)
         return True
 
-    def measure(self, value: py.Value, kind: str = "plain") -> int:
+    def measure(self, value: Value, kind: str = "plain") -> int:
         """Charge a value and return its size: its parts, each as often as it occurs.
 
         Raises Undetermined.
 
         `kind` is that of the function that is given the value.
         """
-        if isinstance(value, py.SCALARS):
+        if isinstance(value, SCALARS):
             size = 1 + self._size_alone(value, kind)
             self.charge(size)
             return size
-        pending, size = [value], 0
+        pending = [value]
+        size = 0
         while pending:
             part = pending.pop()
             size += 1 + self._size_alone(part, kind)
             inside = list_parts(part)
-            if size + len(pending) + len(inside) > py.MAX_PARTS:
+            if size + len(pending) + len(inside) > MAX_PARTS:
                 too_large("value")
             self.charge(len(inside))
             pending += inside
         self.charge(size)
         return size
 
-    def checked(self, value: py.Value, kind: str = "holds") -> py.Value:
+    def checked(self, value: Value, kind: str = "holds") -> Value:
         """Return a value that was produced, once it is charged.
 
         Raises Undetermined for one that is too large.
@@ -151,7 +170,7 @@ class Budget:
             self.rooted(value)
         return value
 
-    def rooted(self, value: py.Value) -> py.Value:
+    def rooted(self, value: Value) -> Value:
         """Return a text or path in which a stand-in is at most the beginning.
 
         Raises Undetermined.
@@ -162,23 +181,23 @@ class Budget:
                 if stand_in.strip("/") in rest or (
                     rest != text and not rest.startswith("/") and rest
                 ):
-                    raise py.Undetermined(_FOLDER)
+                    raise Undetermined(_FOLDER)
         return value
 
-    def items(self, value: py.Value) -> Iterator[py.Value]:
+    def items(self, value: Value) -> Iterator[Value]:
         """Return what a loop over a value yields: the letters of a text, if they are known.
 
         Raises Undetermined.
         """
         if isinstance(value, str):
             self.measure(value)
-        return py.iterate(value)
+        return iterate(value)
 
-    def is_below(self, before: py.Value, after: py.Value) -> bool:
+    def is_below(self, before: Value, after: Value) -> bool:
         """Return whether a path is below the folders that are not known, as another one is."""
         return all(stand_in in str(after) for stand_in in self.stand_ins if stand_in in str(before))
 
-    def _size_alone(self, part: py.Value, kind: str) -> int:
+    def _size_alone(self, part: Value, kind: str) -> int:
         """Return the size of a part beyond one.
 
         Raises Undetermined for one that is too large, or not known.
@@ -186,7 +205,7 @@ class Budget:
         if isinstance(part, str):
             return self._size_of_text(part, kind)
         if isinstance(part, int):
-            if part.bit_length() > py.MAX_BITS:
+            if part.bit_length() > MAX_BITS:
                 too_large("number")
             return part.bit_length() // _BITS
         if isinstance(part, PurePosixPath):
@@ -196,13 +215,14 @@ class Budget:
         return refuse(part, f"values of the type {type(part).__name__} are not supported")
 
     def _size_of_text(self, text: str, kind: str) -> int:
-        if len(text) > py.MAX_TEXT:
+        if len(text) > MAX_TEXT:
             too_large("text")
         if kind == "plain" and any(stand_in in text for stand_in in self.stand_ins):
-            raise py.Undetermined(_FOLDER)
+            raise Undetermined(_FOLDER)
         return len(text) // CHARACTERS
 
 
-def whole_budget(sizes: Iterable[int]) -> Budget:
+def whole_budget(sizes: Iterable[int], packages: int) -> Budget:
     """Return the budget of all files of a workspace, of texts of these sizes in bytes."""
-    return Budget(_OF_WORKSPACE + sum(min(size, _MAX_TEXT) for size in sizes))
+    fixed = _OF_WORKSPACE + _OF_PACKAGE * packages
+    return Budget(fixed + sum(min(size, _MAX_TEXT) for size in sizes))

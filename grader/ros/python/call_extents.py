@@ -4,7 +4,7 @@ import ast
 from collections.abc import Mapping
 
 from grader.base.source import Source
-from grader.ros.python.parse import Code, Position, location_in, make_position, parse
+from grader.ros.python.parse import Code, end_position, location_in, make_position, parse
 from grader.ros.python.walking import walk
 
 
@@ -19,8 +19,8 @@ def ends_of_calls(source: Source) -> Mapping[tuple[int, int], int]:
     for node in walk(code.tree) if isinstance(code, Code) else ():
         if isinstance(node, ast.Call):
             place = location_in(source, make_position(node))
-            last = Position(node.end_lineno or 0, (node.end_col_offset or 0) + 1)
-            end = location_in(source, last)
-            key, offset = (place.line, place.column), source.start_offset(end)
+            end = location_in(source, end_position(node))
+            key = (place.line, place.column)
+            offset = source.start_offset(end)
             ends[key] = max(offset, ends.get(key, 0))
     return ends

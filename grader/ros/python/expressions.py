@@ -73,7 +73,7 @@ class Expressions:
         kind = self.KINDS.get(type(node))
         if kind is None:
             raise Undetermined("an expression of this kind is not supported")
-        value: Value = kind(self, node, scope)
+        value = kind(self, node, scope)
         if type(node) in _MAKES_VALUES:
             return self.budget.checked(value)
         return value
@@ -95,7 +95,8 @@ class Expressions:
             return self._find(node.id)
 
     def _binop(self, node: ast.BinOp, scope: Scope) -> Value:
-        left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
+        left = self.evaluate(node.left, scope)
+        right = self.evaluate(node.right, scope)
         return operate(node.op, left, right, self.budget)
 
     def _ifexp(self, node: ast.IfExp, scope: Scope) -> Value:
@@ -159,7 +160,7 @@ class Expressions:
         return True
 
     def _boolop(self, node: ast.BoolOp, scope: Scope) -> Value:
-        value: Value = None
+        value = None
         for index, operand in enumerate(node.values, 1):
             value = self.evaluate(operand, scope)
             others = node.values[index:]
@@ -177,7 +178,7 @@ class Expressions:
         if not isinstance(key, ast.Slice):
             return self.evaluate(key, scope)
         bounds = [
-            None if bound is None else self.evaluate(bound, scope)
+            None if not bound else self.evaluate(bound, scope)
             for bound in (key.lower, key.upper, key.step)
         ]
         self.budget.measure(bounds)
@@ -278,7 +279,7 @@ class Expressions:
     }
 
 
-_UNARY: Mapping[type[ast.unaryop], Callable[[Value], Value]] = {
+_UNARY = {
     ast.Not: lambda value: not truth(value),
     ast.USub: lambda value: -value,
     ast.UAdd: lambda value: +value,

@@ -21,7 +21,6 @@ from typing import Any, ClassVar
 from grader.base.names import closest
 from grader.ros.known.python_names import python_names
 from grader.ros.known.releases import RELEASES
-from grader.ros.python import values as py
 from grader.ros.python.bindings import names_bound
 from grader.ros.python.budget import Budget
 from grader.ros.python.builtins import truth
@@ -35,12 +34,35 @@ from grader.ros.python.library import (
     usual_meaning,
 )
 from grader.ros.python.operators import has_attribute, operate
-from grader.ros.python.parse import Code, Position, bound_in, make_position, own_nodes
-from grader.ros.python.values import call_plain, charge_str, known, refuse
+from grader.ros.python.parse import Code, Position, bound_in, caught_by, make_position, own_nodes
+from grader.ros.python.values import (
+    PLAIN,
+    BoundMethod,
+    Call,
+    ClassBody,
+    EvaluationFails,
+    EvaluationSignal,
+    Function,
+    FunctionTable,
+    InnerScope,
+    Items,
+    Namespace,
+    PlainFunction,
+    QualifiedName,
+    Scope,
+    Undetermined,
+    Unknown,
+    Value,
+    call_plain,
+    charge_str,
+    known,
+    one_of,
+    refuse,
+)
 from grader.ros.python.walking import walk
 
 _PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
-_NO_NAMES: Mapping[str, py.Value] = {}
+_NO_NAMES: Mapping[str, Value] = {}
 MAX_FILE_STEPS = 100_000  # what the evaluation of one file may use
 _IN_ANNOTATIONS = (
     ast.Attribute,
@@ -57,15 +79,15 @@ _IN_ANNOTATIONS = (
 _BUILT_IN = {name: getattr(builtins, name) for name in python_names("builtins", RELEASES[:1])}
 
 
-class _ReturnFlow(py.EvaluationSignal):
+class _ReturnFlow(EvaluationSignal):
     """A return statement, with its value."""
 
-    def __init__(self, value: py.Value) -> None:
+    def __init__(self, value: Value) -> None:
         super().__init__()
         self.value = value
 
 
-class _RaiseFlow(py.EvaluationSignal):
+class _RaiseFlow(EvaluationSignal):
     """A raise statement that may not run."""
 
 
@@ -81,27 +103,25 @@ _ENVIRONMENTS = ("os.environ", "environ")
 SEARCHED_VARIABLES = ("AMENT_PREFIX_PATH", "PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "HOME")
 
 
-class _ClassScope(py.Scope):
+class _ClassScope(Scope):
     """The names in the body of a class."""
 
 
-def _stop_at(node: ast.FunctionDef) -> Iterator[py.Value]:
+def _stop_at(node: ast.FunctionDef) -> Iterator[Value]:
     """Raise Undetermined where the first item of a generator function is needed."""
     yield from ()
-    raise py.Undetermined(
-        "a generator function is not evaluated", make_position(node), is_final=True
-    )
+    raise Undetermined("a generator function is not evaluated", make_position(node), is_final=True)
 
 
-def _catches(kind: ast.expr | None, raised: py.EvaluationFails, at: Position) -> bool:
+def _catches(kind: ast.expr | None, raised: EvaluationFails, at: Position) -> bool:
     """Return whether `except KIND` catches an error. Raises Undetermined."""
     name = kind.id if isinstance(kind, ast.Name) else ""
-    if kind is None or name == "BaseException" or (raised.kind is None and name == "Exception"):
+    if not kind or name == "BaseException" or (raised.kind is None and name == "Exception"):
         return True
     caught = _BUILT_IN.get(name)
     if raised.kind is None or not isinstance(caught, type):
         message = "which error is raised in this try is not evaluated"
-        raise py.Undetermined(message, at, is_final=True)
+        raise Undetermined(message, at, is_final=True)
     return issubclass(raised.kind, caught)
 
 
@@ -120,7 +140,7 @@ def _reads_environment(node: ast.AST) -> bool:
     return any(_full_name(each) in _ENVIRONMENTS for each in nodes)
 
 
-def _fits(subject: py.Value, pattern: ast.pattern) -> bool | None:
+def _fits(subject: Value, pattern: ast.pattern) -> bool | None:
     """Return whether a pattern is certainly that of a value, or certainly not."""
     match pattern:
         case ast.MatchAs(pattern=None):
@@ -133,9 +153,9 @@ def _fits(subject: py.Value, pattern: ast.pattern) -> bool | None:
     return None
 
 
-def _join_ends(ends: Sequence[dict[str, py.Value]], at: Position) -> dict[str, py.Value]:
+def _join_ends(ends: Sequence[dict[str, Value]], at: Position) -> dict[str, Value]:
     """Return the names after branches: each has the value of all, or is one of several."""
-    joined: dict[str, py.Value] = {}
+    joined = {}
     for name in dict.fromkeys(chain.from_iterable(ends)):
         values = [end[name] for end in ends if name in end]
         is_same = len(values) == len(ends) and all(
@@ -143,7 +163,7 @@ def _join_ends(ends: Sequence[dict[str, py.Value]], at: Position) -> dict[str, p
             for value in values
         )
         reason = f"which branch binds {name} {NOT_EVALUATED}"
-        joined[name] = values[0] if is_same else py.one_of(values, reason, at)
+        joined[name] = values[0] if is_same else one_of(values, reason, at)
     return joined
 
 
@@ -152,8 +172,8 @@ class Interpreter(Evaluation):
 
     def __init__(
         self,
-        functions: py.FunctionTable,
-        names: Mapping[str, py.Value],
+        functions: FunctionTable,
+        names: Mapping[str, Value],
         *,
         stand_ins: Collection[str] = (),
         budget: Budget | None = None,
@@ -175,25 +195,25 @@ class Interpreter(Evaluation):
         self.exports = exports or {}
         self.local_modules = local_modules
         self.goes_on = goes_on
-        self.unread: list[py.Unknown] = []  # the statements that are not evaluated
+        self.unread: list[Unknown] = []  # the statements that are not evaluated
         self.chosen = 0  # how many conditions are around the statement, which hold
 
-    def run(self, code: Code) -> py.Scope:
+    def run(self, code: Code) -> Scope:
         """Evaluate a whole file and return the scope of its names. It never raises."""
         self.releases = code.releases
         try:
             self._block(code.tree.body, self.module)
-        except (py.EvaluationSignal, RecursionError) as error:
+        except (EvaluationSignal, RecursionError) as error:
             self._stop(error)
         return self.module
 
     def call_from_outside(
         self,
-        function: py.Function | py.Call,
+        function: Function | Call,
         at: Position,
-        args: Sequence[py.Value] | None = (),
-        named: Mapping[str, py.Value] = _NO_NAMES,
-    ) -> py.Value:
+        args: Sequence[Value] | None = (),
+        named: Mapping[str, Value] = _NO_NAMES,
+    ) -> Value:
         """Return the value of a call of a function of the file, or of partial() of one.
 
         It never raises.
@@ -202,75 +222,79 @@ class Interpreter(Evaluation):
         may never happen.
         """
         count = 1
-        if isinstance(function, py.Function):
+        if isinstance(function, Function):
             given = function.parameters
-            count = len([*given.posonlyargs, *given.args]) - len(given.defaults)
-        event: list[py.Value] = [py.Unknown("an event is known only at run time", at)] * count
-        recorded, doubt, unread = list(self.errors), self.doubt, list(self.unread)
+            count = len(given.posonlyargs + given.args) - len(given.defaults)
+        event = [Unknown("an event is known only at run time", at)] * count
+        recorded = list(self.errors)
+        doubt = self.doubt
+        unread = list(self.unread)
         try:
-            made = py.Call("", event if args is None else list(args), dict(named), at)
+            made = Call("", event if args is None else list(args), dict(named), at)
             return self.call_value(function, made)
-        except (py.EvaluationSignal, RecursionError) as error:
+        except (EvaluationSignal, RecursionError) as error:
             return self._stop(error, at)
         finally:
             if args is None:
-                self.errors, self.doubt, self.unread = recorded, doubt, unread
+                self.errors = recorded
+                self.doubt = doubt
+                self.unread = unread
 
     def _stop(
-        self, error: py.EvaluationSignal | RecursionError, at: Position | None = None
-    ) -> py.Unknown:
+        self, error: EvaluationSignal | RecursionError, at: Position | None = None
+    ) -> Unknown:
         if isinstance(error, RecursionError):
-            error = py.Undetermined("the file is too deeply nested, which is not evaluated")
+            error = Undetermined("the file is too deeply nested, which is not evaluated")
         return self.doubted(error.as_unknown(at or self.at))
 
-    def _block(self, body: list[ast.stmt], scope: py.Scope) -> None:
+    def _block(self, body: list[ast.stmt], scope: Scope) -> None:
         for node in body:
             self.budget.charge(1)
             self.at = make_position(node)
             kind = self._STATEMENTS.get(type(node), Interpreter._unsupported)
             try:
                 kind(self, node, scope)
-            except py.EvaluationFails as error:  # of the statement itself, such as an assignment
+            except EvaluationFails as error:  # of the statement itself, such as an assignment
                 at = error.at or make_position(node)
                 self.error(str(error), at, error.kind, argument=error.argument, lacks=error.lacks)
-            except py.Undetermined as error:
+            except Undetermined as error:
                 what = "" if error.is_final else f"this statement {NOT_EVALUATED}: "
-                unknown = py.Unknown(f"{what}{error}", error.at or make_position(node))
+                unknown = Unknown(f"{what}{error}", error.at or make_position(node))
                 self._skip(node, unknown, scope)
 
-    def _unsupported(self, node: ast.stmt, _: py.Scope) -> None:
+    def _unsupported(self, node: ast.stmt, _: Scope) -> None:
         reason = f"a statement of the kind {type(node).__name__} {NOT_EVALUATED}"
-        raise py.Undetermined(reason, self.at, is_final=True)
+        raise Undetermined(reason, is_final=True)
 
-    def _skip(self, node: ast.stmt, unknown: py.Unknown, scope: py.Scope) -> None:
+    def _skip(self, node: ast.stmt, unknown: Unknown, scope: Scope) -> None:
         """Go on after a statement that is not evaluated: what it may change is open then.
 
         Raises Undetermined where it may change more, or where what follows may not run.
         """
         parts = own_nodes(node) if not isinstance(node, ast.FunctionDef | ast.ClassDef) else [node]
         is_loop = isinstance(node, ast.For | ast.While)
-        leaving = _LEAVING if is_loop else (*_LEAVING, *_LEAVING_LOOPS)
+        leaving = _LEAVING if is_loop else (_LEAVING + _LEAVING_LOOPS)
         names = names_bound(parts)
         if not self.goes_on or "*" in names or any(isinstance(part, leaving) for part in parts):
-            raise py.Undetermined(unknown.reason, unknown.at, is_final=True)
+            raise Undetermined(unknown.reason, unknown.at, is_final=True)
         for name in sorted({part.id for part in parts if isinstance(part, ast.Name)} - names):
             self._make_reached_open(name, scope, unknown)
         self.unread.append(self.doubted(unknown))
         scope.names.update(dict.fromkeys(names, unknown))
 
-    def _make_reached_open(self, name: str, scope: py.Scope, unknown: py.Unknown) -> None:
+    def _make_reached_open(self, name: str, scope: Scope, unknown: Unknown) -> None:
         """Keep that a name's value may have changed, and of a function what its scope has."""
-        with suppress(KeyError, py.EvaluationFails):
+        with suppress(KeyError, EvaluationFails):
             value = scope.find(name)
             self.make_open(value, unknown)
-            if isinstance(value, py.Function):
+            if isinstance(value, Function):
                 self.budget.charge(len(value.scope.names) // _COPIED)
-                for shared in [*value.scope.names.values()]:
+                for shared in list(value.scope.names.values()):
                     if isinstance(shared, list):
                         self.make_open(shared, unknown)
 
     def _perhaps(
-        self, branches: Sequence[Callable[[], None]], reason: py.Undetermined, scope: py.Scope
+        self, branches: Sequence[Callable[[], None]], reason: Undetermined, scope: Scope
     ) -> None:
         """Run branches of which one runs, and keep as open what they do not agree on.
 
@@ -278,9 +302,11 @@ class Interpreter(Evaluation):
         """
         at = reason.at or self.at
         if not self.goes_on or reason.is_final:
-            raise py.Undetermined(str(reason), at, is_final=True)
+            raise Undetermined(str(reason), at, is_final=True)
         self.budget.charge(len(branches) * len(scope.names) // _COPIED)
-        before, ends, returned = dict(scope.names), list[dict[str, py.Value]](), list[py.Value]()
+        before = dict(scope.names)
+        ends = []
+        returned = []
         self.possible += 1
         try:
             for branch in branches:
@@ -298,17 +324,17 @@ class Interpreter(Evaluation):
         if not ends:
             if not returned:
                 raise _RaiseFlow
-            raise _ReturnFlow(py.one_of(returned, _OF_BRANCHES, at))
+            raise _ReturnFlow(one_of(returned, _OF_BRANCHES, at))
         scope.names.clear()
         scope.names.update(_join_ends(ends, at))
         if returned:
             scope.returned += returned
             self.possible += 1  # until the function ends
 
-    def _functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
+    def _functiondef(self, node: ast.FunctionDef, scope: Scope) -> None:
         at = make_position(node)
         if getattr(node, "type_params", []):
-            raise py.Undetermined(
+            raise Undetermined(
                 "a function with type parameters is not evaluated", at, is_final=True
             )
         decorators = [self.evaluate(decorator, scope) for decorator in node.decorator_list]
@@ -320,7 +346,7 @@ class Interpreter(Evaluation):
             parameters.vararg,
             parameters.kwarg,
         )
-        function: py.Value = self.function(
+        function = self.function(
             parameters, scope, at, partial(self._function_body, node), bound_in(node)
         )
         for annotation in (
@@ -329,20 +355,21 @@ class Interpreter(Evaluation):
         ):
             self._annotation(annotation, scope)
         for decorator in reversed(decorators):
-            function = self.call_value(decorator, py.Call("", [function], {}, at))
+            function = self.call_value(decorator, Call("", [function], {}, at))
         scope.names[node.name] = function
 
-    def _classdef(self, node: ast.ClassDef, scope: py.Scope) -> None:
+    def _classdef(self, node: ast.ClassDef, scope: Scope) -> None:
         """Evaluate the body of a class, which is not evaluated itself."""
         bases = [self.evaluate(base, scope) for base in node.bases]
         is_plain = not node.keywords and not node.decorator_list
-        if not is_plain or not all(isinstance(base, py.QualifiedName) for base in bases):
-            raise py.Undetermined("a class of this kind is not evaluated", self.at, is_final=True)
-        at, inside = self.at, _ClassScope({}, scope)
+        if not is_plain or not all(isinstance(base, QualifiedName) for base in bases):
+            raise Undetermined("a class of this kind is not evaluated", is_final=True)
+        at = self.at
+        inside = _ClassScope({}, scope)
         self._block(node.body, inside)
-        scope.names[node.name] = py.ClassBody(inside.names, at)
+        scope.names[node.name] = ClassBody(inside.names, at)
 
-    def _delete(self, node: ast.Delete, scope: py.Scope) -> None:
+    def _delete(self, node: ast.Delete, scope: Scope) -> None:
         for target in node.targets:
             match target:
                 case ast.Name(id=name) if name in scope.names:
@@ -353,12 +380,13 @@ class Interpreter(Evaluation):
                         refuse(changed, "this use of del is not supported")
                     call_plain(delitem, changed, known(self.key(key, scope)))
                 case _:
-                    raise py.Undetermined("this use of del is not supported")
+                    raise Undetermined("this use of del is not supported")
 
-    def _function_body(self, node: ast.FunctionDef, scope: py.Scope) -> py.Value:
+    def _function_body(self, node: ast.FunctionDef, scope: Scope) -> Value:
         if any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in own_nodes(node)):
-            return py.Items(_stop_at(node))
-        possible, value = self.possible, None
+            return Items(_stop_at(node))
+        possible = self.possible
+        value = None
         try:
             self._block(node.body, scope)
         except _ReturnFlow as flow:
@@ -366,34 +394,35 @@ class Interpreter(Evaluation):
         except _RaiseFlow:
             if not scope.returned:
                 raise
-            return py.one_of(scope.returned, _OF_BRANCHES, self.at)
+            return one_of(scope.returned, _OF_BRANCHES, self.at)
         finally:
             self.possible = possible
         if scope.returned:
-            return py.one_of([*scope.returned, value], _OF_BRANCHES, self.at)
+            return one_of([*scope.returned, value], _OF_BRANCHES, self.at)
         return value
 
-    def _return(self, node: ast.Return, scope: py.Scope) -> None:
-        raise _ReturnFlow(self.evaluate(node.value, scope) if node.value is not None else None)
+    def _return(self, node: ast.Return, scope: Scope) -> None:
+        raise _ReturnFlow(self.evaluate(node.value, scope) if node.value else None)
 
-    def _annotation(self, node: ast.expr | None, scope: py.Scope) -> None:
+    def _annotation(self, node: ast.expr | None, scope: Scope) -> None:
         """Find the names of an annotation, and stop where it calls something."""
-        if node is None:
+        if not node:
             return
         for part in walk(node):
             if isinstance(part, ast.Name):
                 self._name(part, scope)
             elif not isinstance(part, _IN_ANNOTATIONS):
-                raise py.Undetermined("this annotation is not evaluated", self.at, is_final=True)
+                raise Undetermined("this annotation is not evaluated", is_final=True)
 
-    def _if(self, node: ast.If, scope: py.Scope) -> None:
-        doubt, is_guard = self.doubt, _reads_environment(node.test)
+    def _if(self, node: ast.If, scope: Scope) -> None:
+        doubt = self.doubt
+        is_guard = _reads_environment(node.test)
         value = self.evaluate(node.test, scope)
         if is_guard:
             self.doubt = doubt  # whether a variable is set raises nothing
         try:
             holds = truth(value)
-        except py.Undetermined as error:
+        except Undetermined as error:
             if error.follows_error:
                 raise
             bodies = (node.body, node.orelse)
@@ -409,39 +438,40 @@ class Interpreter(Evaluation):
             finally:
                 self.chosen -= 1
 
-    def _for(self, node: ast.For, scope: py.Scope) -> None:
+    def _for(self, node: ast.For, scope: Scope) -> None:
         items = self.evaluate(node.iter, scope)
         # How often it runs once the error is fixed is not known.
-        if isinstance(items, py.Unknown) and items.follows_error:
+        if isinstance(items, Unknown) and items.follows_error:
             self.doubted(items)
             items = []
         for item in self.budget.items(items):
-            if not (isinstance(item, py.Unknown) and item.candidates):
+            if not (isinstance(item, Unknown) and item.candidates):
                 self._round(node, item, scope)
                 continue
             rounds = [partial(self._round, node, each, scope) for each in item.candidates]
             self._perhaps([*rounds, lambda: None], item.as_signal(item.at), scope)
         self._block(node.orelse, scope)
 
-    def _round(self, node: ast.For, item: py.Value, scope: py.Scope) -> None:
+    def _round(self, node: ast.For, item: Value, scope: Scope) -> None:
         self.bind(node.target, item, scope)
         self._block(node.body, scope)
 
-    def _while(self, node: ast.While, scope: py.Scope) -> None:
+    def _while(self, node: ast.While, scope: Scope) -> None:
         """Run the body once, as what may run or not, with what it binds as open values."""
-        reason = py.Undetermined(f"how often this loop runs {NOT_EVALUATED}", self.at)
+        reason = Undetermined(f"how often this loop runs {NOT_EVALUATED}", self.at)
         unknown = self.doubted(reason.as_unknown(self.at))
         self.unread.append(unknown)
         scope.names.update(dict.fromkeys(names_bound(own_nodes(node)), unknown))
         self._perhaps([partial(self._block, node.body, scope), lambda: None], reason, scope)
         self._block(node.orelse, scope)
 
-    def _match(self, node: ast.Match, scope: py.Scope) -> None:
+    def _match(self, node: ast.Match, scope: Scope) -> None:
         """Run the case of a known value, or each of those that may be meant."""
-        subject, cases = self.evaluate(node.subject, scope), list[ast.match_case]()
+        subject = self.evaluate(node.subject, scope)
+        cases = []
         for case in node.cases:
             scope.names.update(
-                dict.fromkeys(names_bound(walk(case.pattern)), py.Unknown(_OF_BRANCHES, self.at))
+                dict.fromkeys(names_bound(walk(case.pattern)), Unknown(_OF_BRANCHES, self.at))
             )
             fits = None if case.guard else _fits(subject, case.pattern)
             if fits is not False:
@@ -452,52 +482,52 @@ class Interpreter(Evaluation):
             self._block(cases[0].body, scope)
         elif cases:
             bodies = [partial(self._block, case.body, scope) for case in cases]
-            reason = py.Undetermined(_OF_BRANCHES, self.at)
+            reason = Undetermined(_OF_BRANCHES, self.at)
             self._perhaps(bodies if fits else [*bodies, lambda: None], reason, scope)
 
-    def _with(self, node: ast.With, scope: py.Scope) -> None:
+    def _with(self, node: ast.With, scope: Scope) -> None:
         first, *others = node.items
         body = node.body
         if others:  # are as a statement in the statement
             body = [ast.copy_location(ast.With(items=others, body=node.body), node)]
-        value, target = self.evaluate(first.context_expr, scope), first.optional_vars
-        if isinstance(value, py.Call):
-            self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, self.at))
+        value = self.evaluate(first.context_expr, scope)
+        target = first.optional_vars
+        if isinstance(value, Call):
+            self.call_value(BoundMethod(value, "__enter__"), Call("", [], {}, self.at))
         # open() of a file that does not exist has failed.
-        is_open = isinstance(value, py.Unknown) and (value.follows_error or self.goes_on)
-        if not (isinstance(value, py.Call | StringIO) or is_open):
-            raise py.Undetermined("this use of with is not evaluated", self.at, is_final=True)
-        if target is not None:
+        is_open = isinstance(value, Unknown) and (value.follows_error or self.goes_on)
+        if not (isinstance(value, Call | StringIO) or is_open):
+            raise Undetermined("this use of with is not evaluated", is_final=True)
+        if target:
             self.bind(target, value, scope)
         try:
             self._block(body, scope)
         finally:
             if isinstance(value, StringIO):
                 value.close()
-            elif isinstance(value, py.Call):
-                value.method_calls.append(py.Call(f"{value.name}.__exit__", [], {}, self.at, value))
+            elif isinstance(value, Call):
+                value.method_calls.append(Call(f"{value.name}.__exit__", [], {}, self.at, value))
 
-    def _annassign(self, node: ast.AnnAssign, scope: py.Scope) -> None:
-        if node.value is not None:
+    def _annassign(self, node: ast.AnnAssign, scope: Scope) -> None:
+        if node.value:
             self.bind(node.target, self.evaluate(node.value, scope), scope)
         if scope is self.module or isinstance(scope, _ClassScope):
             self._annotation(node.annotation, scope)
 
-    def _expr(self, node: ast.Expr, scope: py.Scope) -> None:
+    def _expr(self, node: ast.Expr, scope: Scope) -> None:
         self.evaluate(node.value, scope)
 
-    def _pass(self, node: ast.Pass, scope: py.Scope) -> None:
+    def _pass(self, node: ast.Pass, scope: Scope) -> None:
         pass
 
-    def _import(self, node: ast.Import | ast.ImportFrom, scope: py.Scope) -> None:
+    def _import(self, node: ast.Import | ast.ImportFrom, scope: Scope) -> None:
         module = ""
         if isinstance(node, ast.ImportFrom):
             module = "." * node.level + (node.module or "")
         for alias in node.names:
             if (module or alias.name).split(".")[0] in self.local_modules:
-                raise py.Undetermined(
+                raise Undetermined(
                     f"the file's own module {module or alias.name} is not evaluated",
-                    self.at,
                     is_final=True,
                 )
             error = import_error(module, alias.name, self.exports, self.releases)
@@ -506,17 +536,15 @@ class Interpreter(Evaluation):
                 reason = (
                     f"whether {module or alias.name} is installed is not known; it is not evaluated"
                 )
-                self.doubted(py.Unknown(reason, self.at))
+                self.doubted(Unknown(reason, self.at))
             elif error is not None:
                 self.error(error, self.at, ModuleNotFoundError)
                 bound = dict.fromkeys(bound, usual_meaning(alias.name))
             if bound.pop("*", None) is not None:
-                raise py.Undetermined(
-                    f"the names of {module} are not evaluated", self.at, is_final=True
-                )
+                raise Undetermined(f"the names of {module} are not evaluated", is_final=True)
             scope.names.update(bound)
 
-    def _try(self, node: ast.Try, scope: py.Scope) -> None:
+    def _try(self, node: ast.Try, scope: Scope) -> None:
         """Run a body, and the handler of what it certainly raises; stop where it may raise more."""
         if node.finalbody:
             rest = copy(node)
@@ -526,15 +554,18 @@ class Interpreter(Evaluation):
             finally:
                 self._block(node.finalbody, scope)
             return
-        doubt, self.doubt, raised = self.doubt, None, None
+        doubt = self.doubt
+        self.doubt = None
+        raised = None
         self.attempts += 1
         try:
             self._block(node.body, scope)
-        except py.EvaluationFails as error:
+        except EvaluationFails as error:
             raised = error
         finally:
             self.attempts -= 1
-        reason, self.doubt = self.doubt, doubt
+        reason = self.doubt
+        self.doubt = doubt
         if reason is not None:
             bodies = [node.orelse, *(handler.body for handler in node.handlers)]
             for handler in node.handlers:
@@ -544,87 +575,88 @@ class Interpreter(Evaluation):
                 reason.as_signal(reason.at),
                 scope,
             )
-        elif raised is None:
+        elif not raised:
             self._block(node.orelse, scope)
         else:
             self._handle(raised, node.handlers, scope)
 
     def _handle(
-        self, raised: py.EvaluationFails, handlers: Sequence[ast.ExceptHandler], scope: py.Scope
+        self, raised: EvaluationFails, handlers: Sequence[ast.ExceptHandler], scope: Scope
     ) -> None:
         """Run the handler of an error; raise it again where none catches it."""
         for handler in handlers:
-            kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-            if any(_catches(kind, raised, self.at) for kind in kinds):
+            if any(_catches(kind, raised, self.at) for kind in caught_by(handler)):
                 self._bind_error(handler, scope)
                 self._block(handler.body, scope)
                 return
         raise raised
 
-    def _bind_error(self, handler: ast.ExceptHandler, scope: py.Scope) -> None:
+    def _bind_error(self, handler: ast.ExceptHandler, scope: Scope) -> None:
         if handler.name:
             at = make_position(handler)
-            scope.names[handler.name] = py.Unknown("an error is not evaluated", at)
+            scope.names[handler.name] = Unknown("an error is not evaluated", at)
 
-    def _assert(self, node: ast.Assert, scope: py.Scope) -> None:
+    def _assert(self, node: ast.Assert, scope: Scope) -> None:
         if not truth(self.evaluate(node.test, scope)):
             self.error("this assertion fails", self.at, AssertionError)
 
-    def _raise(self, node: ast.Raise, _: py.Scope) -> None:
+    def _raise(self, node: ast.Raise, _: Scope) -> None:
         raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
         kind = _BUILT_IN.get(raised.id) if isinstance(raised, ast.Name) else None
         is_ended = self.goes_on and not self.attempts
         if is_ended and (self.possible or self.chosen):
             # What a launch file refuses on purpose is no mistake in it.
             reason = f"whether the file raises an error here {NOT_EVALUATED}"
-            self.doubted(py.Unknown(reason, self.at))
+            self.doubted(Unknown(reason, self.at))
             raise _RaiseFlow(reason, self.at)
         if isinstance(kind, type) and issubclass(kind, Exception):
             self.error(f"the file raises {kind.__name__} here", self.at, kind)
         reason = f"which error is raised here {NOT_EVALUATED}"
         if is_ended:
             raise _RaiseFlow(reason, self.at)
-        raise py.Undetermined(reason, self.at, is_final=True)
+        raise Undetermined(reason, is_final=True)
 
-    def _attribute(self, node: ast.Attribute, scope: py.Scope) -> py.Value:
-        owner, name = self.evaluate(node.value, scope), node.attr
-        if isinstance(owner, py.QualifiedName):
+    def _attribute(self, node: ast.Attribute, scope: Scope) -> Value:
+        owner = self.evaluate(node.value, scope)
+        name = node.attr
+        if isinstance(owner, QualifiedName):
             return self._attribute_of_module(owner, node)
         match owner:
             case PurePosixPath() if name in _PARTS:
                 return self._part_of_path(owner, name)
-            case py.Namespace():
+            case Namespace():
                 return owner.find(name)
-            case py.Unknown(is_text=False):
+            case Unknown(is_text=False):
                 return owner.attribute(name, make_position(node))
-        if isinstance(owner, py.PLAIN) and not has_attribute(owner, name, self.releases):
-            raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
-        return py.BoundMethod(owner, name, node)
+        if isinstance(owner, PLAIN) and not has_attribute(owner, name, self.releases):
+            raise EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
+        return BoundMethod(owner, name, node)
 
-    def _part_of_path(self, path: PurePosixPath, name: str) -> py.Value:
+    def _part_of_path(self, path: PurePosixPath, name: str) -> Value:
         """Return an attribute of a path; those above a folder that is not known are not known."""
         value = self.budget.checked(getattr(path, name) if name != "parents" else None, "path")
-        above: list[py.Value] = [*path.parents] if name == "parents" else [value]
+        above = list(path.parents) if name == "parents" else [value]
         is_folder = name in ("parent", "parents")
-        unknown = py.Unknown("the folder that a build installs to is not known", self.at)
+        unknown = Unknown("the folder that a build installs to is not known", self.at)
         known = [
             part if not is_folder or self.budget.is_below(path, part) else unknown for part in above
         ]
         return known if name == "parents" else known[0]
 
-    def _attribute_of_module(self, owner: py.QualifiedName, node: ast.Attribute) -> py.Value:
+    def _attribute_of_module(self, owner: QualifiedName, node: ast.Attribute) -> Value:
         """Return what a name in a module stands for; a misspelt one is an error."""
         if (
             owner.name == "?glob"
         ):  # used without an import: the attribute shows that it is the module
-            return py.QualifiedName(f"glob.{node.attr}")
+            return QualifiedName(f"glob.{node.attr}")
         if owner.name == "glob.glob" and node.attr in ("glob", "iglob"):
             message = (
                 f"glob is a function here, so glob.{node.attr} is not defined: write glob(...)"
             )
             self.error(message, make_position(node))
             return owner
-        module, full = owner.name, f"{owner.name}.{node.attr}"
+        module = owner.name
+        full = f"{owner.name}.{node.attr}"
         is_evaluated = full in self.functions
         error = None if is_evaluated else attribute_error(module, node.attr, self.releases)
         if error is not None:
@@ -633,36 +665,32 @@ class Interpreter(Evaluation):
             ]
             meant = closest(full, known)
             if meant is None:
-                raise py.EvaluationFails(error)
+                raise EvaluationFails(error)
             self.error(error, make_position(node))
             full = meant
-        return CONSTANTS.get(full, py.QualifiedName(full, is_defined=owner.is_defined))
+        return CONSTANTS.get(full, QualifiedName(full, is_defined=owner.is_defined))
 
-    def item(self, owner: py.Value, key: py.Value, node: ast.expr) -> py.Value:
+    def item(self, owner: Value, key: Value, node: ast.expr) -> Value:
         """Return the value of owner[key]; of something outside of the file, by the table."""
-        if not isinstance(owner, py.QualifiedName | py.Call):
+        if not isinstance(owner, QualifiedName | Call):
             return super().item(owner, key, node)
-        made = py.Call(f"{owner.name}.__getitem__", [key], {}, make_position(node))
+        made = Call(f"{owner.name}.__getitem__", [key], {}, make_position(node))
         function = self.functions.get(made.name)
-        if (
-            function is None
-            and isinstance(owner, py.QualifiedName)
-            and owner.name in self.functions
-        ):
+        if function is None and isinstance(owner, QualifiedName) and owner.name in self.functions:
             self.error(
                 f"{owner.name} is a function: write ( ) around its arguments, not [ ]",
                 make_position(node),
             )
-            return self.call_value(owner, py.Call("", [key], {}, make_position(node)))
-        if function is None or isinstance(function, py.PlainFunction):
-            raise py.Undetermined(f"{owner.name}[...] {NOT_EVALUATED}")
+            return self.call_value(owner, Call("", [key], {}, make_position(node)))
+        if function is None or isinstance(function, PlainFunction):
+            raise Undetermined(f"{owner.name}[...] {NOT_EVALUATED}")
         return function(self, made)
 
     def elements(
-        self, nodes: Sequence[ast.expr], scope: py.Scope, *, is_call: bool = False
-    ) -> list[py.Value]:
+        self, nodes: Sequence[ast.expr], scope: Scope, *, is_call: bool = False
+    ) -> list[Value]:
         """Return the values of the elements of a list, or of the arguments of a call."""
-        values: list[py.Value] = []
+        values = []
         for node in chain.from_iterable(map(self._separated, nodes)):
             if not isinstance(node, ast.Starred):
                 values.append(self.evaluate(node, scope))
@@ -670,15 +698,15 @@ class Interpreter(Evaluation):
             value = self.evaluate(node.value, scope)
             try:
                 values += self.budget.items(value) if is_call else self._list_items(value)
-            except py.Undetermined as error:
-                raise py.Undetermined(
+            except Undetermined as error:
+                raise Undetermined(
                     str(error), error.at or make_position(node), is_final=True
                 ) from None
         return values
 
-    def _list_items(self, value: py.Value) -> list[py.Value]:
+    def _list_items(self, value: Value) -> list[Value]:
         """Return the items of a value; of one that is not known, those that may be there."""
-        if self.goes_on and isinstance(value, py.Unknown):
+        if self.goes_on and isinstance(value, Unknown):
             return spread(value)
         return list(self.budget.items(value))
 
@@ -700,14 +728,14 @@ class Interpreter(Evaluation):
                     return [*before, ast.copy_location(ast.Tuple(elts=args, ctx=ast.Load()), start)]
         return [node]
 
-    def _set(self, node: ast.Set, scope: py.Scope) -> py.Value:
+    def _set(self, node: ast.Set, scope: Scope) -> Value:
         return call_plain(set, self.elements(node.elts, scope))
 
-    def _dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
-        table: dict[Any, py.Value] = {}
+    def _dict(self, node: ast.Dict, scope: Scope) -> Value:
+        table: dict[Any, Value] = {}
         for key, value in zip(node.keys, node.values, strict=True):
             evaluated = self.evaluate(value, scope)
-            if key is not None:
+            if key:
                 call_plain(table.__setitem__, known(self.evaluate(key, scope)), evaluated)
             elif isinstance(evaluated, dict):
                 table |= evaluated
@@ -715,41 +743,41 @@ class Interpreter(Evaluation):
                 refuse(evaluated, "this dict is not supported")
         return table
 
-    def _joinedstr(self, node: ast.JoinedStr, scope: py.Scope) -> py.Value:
+    def _joinedstr(self, node: ast.JoinedStr, scope: Scope) -> Value:
         pieces = [self.evaluate(piece, scope) for piece in node.values]
-        if len(pieces) == 1 and isinstance(pieces[0], py.Unknown):
+        if len(pieces) == 1 and isinstance(pieces[0], Unknown):
             return pieces[0]
         self.budget.measure(pieces, "text")
         return self.budget.checked("".join(pieces), "text")
 
-    def _formattedvalue(self, node: ast.FormattedValue, scope: py.Scope) -> py.Value:
+    def _formattedvalue(self, node: ast.FormattedValue, scope: Scope) -> Value:
         value = self.evaluate(node.value, scope)
-        is_text = isinstance(value, py.Unknown) and value.is_text
+        is_text = isinstance(value, Unknown) and value.is_text
         if not is_text:
             self.budget.measure(value, "text")
-        if node.format_spec is not None or node.conversion not in (-1, ord("s")):
-            raise py.Undetermined("a format of this kind is not supported")
+        if node.format_spec or node.conversion not in (-1, ord("s")):
+            raise Undetermined("a format of this kind is not supported")
         return value if is_text else charge_str(value)
 
-    def _dictcomp(self, node: ast.DictComp, scope: py.Scope) -> py.Value:
+    def _dictcomp(self, node: ast.DictComp, scope: Scope) -> Value:
         return {
             known(self.evaluate(node.key, inner)): self.evaluate(node.value, inner)
-            for inner in self.rounds(node.generators, py.InnerScope({}, scope))
+            for inner in self.rounds(node.generators, InnerScope({}, scope))
         }
 
-    def _namedexpr(self, node: ast.NamedExpr, scope: py.Scope) -> py.Value:
+    def _namedexpr(self, node: ast.NamedExpr, scope: Scope) -> Value:
         value = self.evaluate(node.value, scope)
-        while isinstance(scope, py.InnerScope) and scope.outer is not None:
+        while isinstance(scope, InnerScope) and scope.outer:
             scope = scope.outer
         self.bind(node.target, value, scope)
         return value
 
-    def _lambda(self, node: ast.Lambda, scope: py.Scope) -> py.Value:
+    def _lambda(self, node: ast.Lambda, scope: Scope) -> Value:
         return self.function(
             node.args, scope, make_position(node), lambda inner: self.evaluate(node.body, inner)
         )
 
-    def bind(self, target: ast.expr, value: py.Value, scope: py.Scope) -> None:
+    def bind(self, target: ast.expr, value: Value, scope: Scope) -> None:
         """Bind the names of a target to a value, or change an item."""
         match target:
             case ast.Subscript(value=owner, slice=key):
@@ -761,49 +789,48 @@ class Interpreter(Evaluation):
                 )
             case ast.Attribute(value=owner, attr=name):
                 changed = self.evaluate(owner, scope)
-                if isinstance(changed, py.PLAIN):
-                    raise py.EvaluationFails(
-                        f"{type(changed).__name__!r} has no attribute {name!r}"
-                    )
+                if isinstance(changed, PLAIN):
+                    raise EvaluationFails(f"{type(changed).__name__!r} has no attribute {name!r}")
                 reason = f"a change of the attribute {name} is not evaluated"
-                raise py.Undetermined(reason, make_position(target), is_final=True)
+                raise Undetermined(reason, make_position(target), is_final=True)
             case _:
                 super().bind(target, value, scope)
 
-    def _store(self, owner: py.Value, key: py.Value, value: py.Value, at: Position) -> None:
+    def _store(self, owner: Value, key: Value, value: Value, at: Position) -> None:
         """Set an item of a list or dict."""
-        if isinstance(owner, py.QualifiedName | py.Call):
-            made = py.Call(f"{owner.name}.__setitem__", [key, value], {}, at)
-            is_defined = isinstance(owner, py.Call) or owner.is_defined
-            self.call_value(py.QualifiedName(made.name, is_defined=is_defined), made)
+        if isinstance(owner, QualifiedName | Call):
+            made = Call(f"{owner.name}.__setitem__", [key, value], {}, at)
+            is_defined = isinstance(owner, Call) or owner.is_defined
+            self.call_value(QualifiedName(made.name, is_defined=is_defined), made)
             return
-        if not isinstance(owner, py.PLAIN) or isinstance(key, slice):
+        if not isinstance(owner, PLAIN) or isinstance(key, slice):
             refuse(owner, "this assignment to an item is not supported")
         call_plain(setitem, owner, key, self.perhaps(value))
         self.budget.charge(len(owner))
 
-    def _assign(self, node: ast.Assign, scope: py.Scope) -> None:
+    def _assign(self, node: ast.Assign, scope: Scope) -> None:
         value = self.evaluate(node.value, scope)
         for target in node.targets:
             self.bind(target, value, scope)
 
-    def _augassign(self, node: ast.AugAssign, scope: py.Scope) -> None:
+    def _augassign(self, node: ast.AugAssign, scope: Scope) -> None:
         target = node.target
         if any(isinstance(part, ast.Call | ast.NamedExpr) for part in walk(target)):
-            raise py.Undetermined("this target is not supported")
+            raise Undetermined("this target is not supported")
         load = copy(target)
         load.ctx = ast.Load()
-        before, value = self.evaluate(load, scope), self.evaluate(node.value, scope)
-        if isinstance(before, py.Unknown) and before.is_text:
+        before = self.evaluate(load, scope)
+        value = self.evaluate(node.value, scope)
+        if isinstance(before, Unknown) and before.is_text:
             self.bind(target, before, scope)  # still a text that is not known
             return
-        if not isinstance(before, py.PLAIN):
+        if not isinstance(before, PLAIN):
             refuse(before, "this value is not supported")
         if isinstance(before, list) and isinstance(node.op, ast.Add):
             before.extend(map(self.perhaps, self._list_items(value)))
             self.budget.measure(before, "holds")
         elif isinstance(before, list | dict):
-            raise py.Undetermined("this operator is not supported")
+            raise Undetermined("this operator is not supported")
         else:
             self.bind(target, operate(node.op, before, value, self.budget), scope)
 
@@ -820,7 +847,7 @@ class Interpreter(Evaluation):
     }
 
     # The statements that are evaluated.
-    _STATEMENTS: ClassVar[Mapping[type[ast.stmt], Callable[[Any, Any, py.Scope], None]]] = {
+    _STATEMENTS: ClassVar[Mapping[type[ast.stmt], Callable[[Any, Any, Scope], None]]] = {
         ast.FunctionDef: _functiondef,
         ast.ClassDef: _classdef,
         ast.Delete: _delete,

@@ -7,18 +7,27 @@ None of the functions reads a file.
 
 import ast
 import posixpath
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from enum import Enum
 from functools import cache, lru_cache
 from itertools import chain
 from pathlib import PurePosixPath
 
 from grader.base.names import closest, did_you_mean, near
+from grader.base.text import first_part
 from grader.ros.known.package_tables import python_table
 from grader.ros.known.python_names import MODULES, python_names, python_version
-from grader.ros.known.releases import RELEASES, Release
-from grader.ros.python import values as py
-from grader.ros.python.values import iterate
+from grader.ros.known.releases import RELEASES, Releases
+from grader.ros.python.values import (
+    EvaluationFails,
+    FunctionTable,
+    Items,
+    PlainFunction,
+    QualifiedName,
+    Undetermined,
+    Value,
+    iterate,
+)
 
 MAX_PATH = 4_096  # characters
 # stands for the name of the package's folder, which the workspace does not determine
@@ -41,7 +50,7 @@ _INSTALLED_WITH_ROS = (
 )
 # The names of ROS 2's launch that files use most (ros2/launch and ros2/launch_ros, Jazzy), by their
 # modules.
-_LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
+_LAUNCH_NAMES = {
     "launch": ("LaunchDescription",),
     "launch.actions": (
         "DeclareLaunchArgument",
@@ -122,15 +131,15 @@ def is_inert(name: str) -> bool:
     >>> is_inert("datetime.datetime.now"), is_inert("random.shuffle"), is_inert("os.remove")
     (True, False, False)
     """
-    return name.partition(".")[0] in _INERT and not name.startswith(_NOT_INERT)
+    return first_part(name) in _INERT and not name.startswith(_NOT_INERT)
 
 
-def usual_meaning(name: str) -> py.QualifiedName:
+def usual_meaning(name: str) -> QualifiedName:
     """Return what a name usually means that is used without its import."""
     full = USUAL_NAMES.get(name)
     if full is None:
-        return py.QualifiedName(f"?.{name}", is_defined=False)
-    return py.QualifiedName(full)
+        return QualifiedName(f"?.{name}", is_defined=False)
+    return QualifiedName(full)
 
 
 class Uncertain(Enum):
@@ -143,7 +152,7 @@ def import_error(
     module: str,
     name: str,
     exports: Mapping[str, Collection[str]],
-    releases: tuple[Release, ...] = (),
+    releases: Releases = (),
 ) -> str | Uncertain | None:
     """Return what is wrong with `import name` or `from module import name`; None where it works."""
     if module.startswith("."):
@@ -184,10 +193,11 @@ def find_meant_module(module: str, known: Collection[str]) -> str | None:
 
 
 @lru_cache(maxsize=256)
-def _import_error(module: str, name: str, releases: tuple[Release, ...]) -> str | Uncertain | None:
+def _import_error(module: str, name: str, releases: Releases) -> str | Uncertain | None:
     if name != "*" and module and python_names(module):
         return attribute_error(module, name, releases)
-    full, modules = module or name, python_names(MODULES, releases)
+    full = module or name
+    modules = python_names(MODULES, releases)
     top = full.split(".")[0]
     is_there = top in _INSTALLED_WITH_ROS or full in ("setuptools", "distutils")
     is_there |= f"{module}.{name}" in {*modules, "distutils.core.setup"}
@@ -203,11 +213,11 @@ def _import_error(module: str, name: str, releases: tuple[Release, ...]) -> str 
     return f"there is no module {top!r}; did you mean {guess!r}?"
 
 
-def _in_python(releases: tuple[Release, ...]) -> str:
+def _in_python(releases: Releases) -> str:
     return f" in Python 3.{python_version(releases)}"
 
 
-def attribute_error(module: str, name: str, releases: tuple[Release, ...] = ()) -> str | None:
+def attribute_error(module: str, name: str, releases: Releases = ()) -> str | None:
     """Return what is wrong with `module.name`; None where it works or this is unknown."""
     names = python_names(module, releases)
     if not names or name in names or name.startswith("_"):
@@ -221,45 +231,45 @@ def attribute_error(module: str, name: str, releases: tuple[Release, ...] = ()) 
 
 def imported_names(
     module: str, alias: ast.alias, exports: Mapping[str, Collection[str]]
-) -> dict[str, py.Value]:
+) -> dict[str, Value]:
     """Return what `import name` or `from module import name` binds.
 
     The name * represents unknown names.
     """
     if alias.name == "*":
         return {
-            name or "*": py.QualifiedName(f"{module}.{name}") for name in exports.get(module, [""])
+            name or "*": QualifiedName(f"{module}.{name}") for name in exports.get(module, [""])
         }
     if module:
         full = f"{module}.{alias.name}"
-        return {alias.asname or alias.name: CONSTANTS.get(full, py.QualifiedName(full))}
+        return {alias.asname or alias.name: CONSTANTS.get(full, QualifiedName(full))}
     top = alias.name.split(".")[0]
     if alias.asname:
-        return {alias.asname: py.QualifiedName(alias.name)}
-    return {top: py.QualifiedName(top)}
+        return {alias.asname: QualifiedName(alias.name)}
+    return {top: QualifiedName(top)}
 
 
 @cache
-def standard_functions(working_folder: str) -> py.FunctionTable:
+def standard_functions(working_folder: str) -> FunctionTable:
     """Return the functions by full name.
 
     `working_folder` is where Python runs, as an absolute path.
     """
 
-    def absolute(path: py.Value) -> str:
+    def absolute(path: Value) -> str:
         return posixpath.normpath(posixpath.join(working_folder, path))
 
-    def relative(path: py.Value, start: py.Value = ".") -> str:
+    def relative(path: Value, start: Value = ".") -> str:
         return posixpath.relpath(absolute(path) if path else path, absolute(start))
 
-    path_functions: dict[str, Callable[..., py.Value]] = {
+    path_functions = {
         "abspath": absolute,
         "realpath": absolute,
         "relpath": relative,
         "join": _join,
         **{name: getattr(posixpath, name) for name in _OWN},
     }
-    of_paths: dict[str, Callable[..., py.Value]] = {
+    of_paths = {
         **{f"os.path.{name}": function for name, function in path_functions.items()},
         **{f"pathlib.{name}": _path for name in ("Path", "PurePath", "PosixPath", "PurePosixPath")},
         **{
@@ -267,65 +277,64 @@ def standard_functions(working_folder: str) -> py.FunctionTable:
             for name in ("resolve", "absolute")
         },
         "os.getcwd": lambda: working_folder,
+        "os.fspath": lambda path: str(_require_path(path)),
         "pathlib.Path.cwd": lambda: PurePosixPath(working_folder),
     }
     return {
         **_FUNCTIONS,
-        **{name: py.PlainFunction(name, run, "path") for name, run in of_paths.items()},
+        **{name: PlainFunction(name, run, "path") for name, run in of_paths.items()},
     }
 
 
-def _require_path(value: py.Value) -> py.Value:
+def _require_path(value: Value) -> Value:
     if not isinstance(value, str | PurePosixPath):
-        raise py.EvaluationFails(
-            f"a path is a string, and this is of the type {type(value).__name__}"
-        )
+        raise EvaluationFails(f"a path is a string, and this is of the type {type(value).__name__}")
     return value
 
 
-def _join(first: py.Value, *parts: py.Value) -> str:
+def _join(first: Value, *parts: Value) -> str:
     if not all(isinstance(value, str | PurePosixPath) for value in (first, *parts)):
         message = (
             "os.path.join takes strings, and one argument is not a string: is a bracket misplaced?"
         )
-        raise py.EvaluationFails(message)
+        raise EvaluationFails(message)
     return _bounded(posixpath.join(first, *parts))
 
 
-def _path(*parts: py.Value) -> PurePosixPath:
+def _path(*parts: Value) -> PurePosixPath:
     return PurePosixPath(_bounded(str(PurePosixPath(*map(_require_path, parts)))))
 
 
 def _bounded(path: str) -> str:
     if len(path) > MAX_PATH:
-        raise py.Undetermined("a path grows too long")
+        raise Undetermined("a path grows too long")
     return path
 
 
 def _no_print(
-    *_: py.Value, sep: str = "", end: str = "", file: py.Value = None, flush: bool = False
+    *_: Value, sep: str = "", end: str = "", file: Value = None, flush: bool = False
 ) -> None:
     """Print nothing."""
     del sep, end, file, flush
 
 
-def _set(*values: py.Value) -> set[py.Value]:
+def _set(*values: Value) -> set[Value]:
     return set(*map(list, map(iterate, values)))
 
 
-_FUNCTIONS: py.FunctionTable = {
+_FUNCTIONS = {
     **{
-        f"builtins.{name}": py.PlainFunction(name, lambda function: function, "holds")
+        f"builtins.{name}": PlainFunction(name, lambda function: function, "holds")
         for name in ("staticmethod", "classmethod", "property")
     },
-    "builtins.set": py.PlainFunction("set", _set, "holds"),
-    "builtins.print": py.PlainFunction("print", _no_print, "holds"),
-    "itertools.chain": py.PlainFunction(
-        "chain", lambda *lists: py.Items(chain(*map(iterate, lists))), "holds"
+    "builtins.set": PlainFunction("set", _set, "holds"),
+    "builtins.print": PlainFunction("print", _no_print, "holds"),
+    "itertools.chain": PlainFunction(
+        "chain", lambda *lists: Items(chain(*map(iterate, lists))), "holds"
     ),
-    "itertools.chain.from_iterable": py.PlainFunction(
+    "itertools.chain.from_iterable": PlainFunction(
         "chain.from_iterable",
-        lambda lists: py.Items(chain.from_iterable(map(iterate, iterate(lists)))),
+        lambda lists: Items(chain.from_iterable(map(iterate, iterate(lists)))),
         "holds",
     ),
 }

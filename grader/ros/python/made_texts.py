@@ -1,15 +1,16 @@
 """The texts that a program makes of variables, with a mark in place of what is not known."""
 
 import ast
-import re
 from collections.abc import Iterator
 
+from grader.base.patterns import on_use
+from grader.base.text import last_part
 from grader.ros.python.constants import dotted
 from grader.ros.python.parse import Code
 from grader.ros.python.walking import walk
 
 UNKNOWN = "\0"  # in a text, in place of what is not known
-_FORMATTED = re.compile(r"%[sdi]|\{[^{}]*\}")
+_FORMATTED = on_use(r"%[sdi]|\{[^{}]*\}")
 _JOINING = ("join", "joinpath", "Path", "PathJoinSubstitution")
 
 
@@ -19,7 +20,8 @@ def made_texts(code: Code) -> Iterator[str]:
     texts: dict[str, str] = {}  # of the variables that are bound to one text only
     for node in nodes:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-            name, text = node.targets[0].id, _text(node.value, {})
+            name = node.targets[0].id
+            text = _text(node.value, {})
             texts[name] = text if texts.get(name, text) == text else UNKNOWN
     for node in nodes:
         if isinstance(node, ast.BinOp | ast.JoinedStr | ast.Call | ast.List):
@@ -64,6 +66,6 @@ def _text_of_call(node: ast.Call, texts: dict[str, str]) -> str:
         case ast.Call(func=ast.Attribute(value=value, attr="format")):
             return _FORMATTED.sub(UNKNOWN, _text(value, texts))
         case ast.Call(args=[ast.List(elts=parts)] | parts):
-            if dotted(node.func).rpartition(".")[2] in _JOINING:
+            if last_part(dotted(node.func)) in _JOINING:
                 return "/".join(_text(part, texts) for part in parts)
     return UNKNOWN

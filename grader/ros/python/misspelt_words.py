@@ -16,7 +16,8 @@ def read_as(
     is_refused: bool = True,
 ) -> Slip:
     """Return the slip of a word that is written in a node and stands for another one."""
-    source, at = code.source, code.at(node)
+    source = code.source
+    at = code.at(node)
     start = source.text.find(written, source.start_offset(at))
     edit = source.edit(start, start + len(written), meant)
     assumption = f"{written} is read as {meant}"

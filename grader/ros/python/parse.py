@@ -12,10 +12,11 @@ from io import BytesIO
 from typing import NamedTuple
 
 from grader.base.merge_conflicts import resolve_conflicts
+from grader.base.records import Named
 from grader.base.reuse import reuse
 from grader.base.source import Location, Source
 from grader.ros.known.python_names import python_version, shared_message
-from grader.ros.known.releases import Release
+from grader.ros.known.releases import Releases
 from grader.ros.python.bindings import bound_names
 from grader.ros.python.walking import children, walk
 
@@ -40,7 +41,7 @@ _ADDED = (
 # In it, versions of Python name other places and say other things.
 _F_STRING = r"""\b[rR]?[fF][rR]?(['"])(?:.*?\1)?"""
 _MAX_SEARCHED = 1_000  # characters of a line
-_FUNCTIONS = ("def ", "lambda", "for ")  # what has code of its own; a comprehension has
+_FUNCTIONS = ("def ", "class ", "lambda", "for ")  # what has code of its own; a comprehension has
 _MAX_FUNCTIONS = 2_000  # of a file that is compiled
 
 
@@ -63,16 +64,47 @@ def make_position(node: _Placed) -> Position:
     return Position(node.lineno, node.col_offset + 1)
 
 
+def end_position(node: _Placed) -> Position:
+    """Return the position behind a node."""
+    return Position(node.end_lineno or node.lineno, (node.end_col_offset or 0) + 1)
+
+
+def name_position(node: ast.Attribute) -> Position:
+    """Return the position of the name of an attribute."""
+    line, column = end_position(node)
+    return Position(line, column - len(node.attr))
+
+
+def own_parameters(function: AnyFunction) -> list[str]:
+    """Return the names of the parameters of a function, but for self."""
+    return [parameter.arg for parameter in function.args.args if parameter.arg != "self"]
+
+
+def caught_by(handler: ast.ExceptHandler) -> Sequence[ast.expr | None]:
+    """Return the types of errors that a handler names; None stands for all."""
+    return handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
+
+
 _TOO_DEEP = "too deeply nested for Python to read"
 
 
-class Code(NamedTuple):
+class Code(Named):
     """A parsed file with its text."""
 
     source: Source
     tree: ast.Module
     conflict: tuple[str, Position] | None = None  # of git, without which it was parsed
-    releases: tuple[Release, ...] = ()  # whose Python reads it; none: that of Jazzy
+    releases: Releases = ()  # whose Python reads it; none: that of Jazzy
+
+    @property
+    def nodes(self) -> Sequence[ast.AST]:
+        """All nodes of the module, level by level."""
+        return every_node(self.tree)
+
+    @property
+    def text(self) -> str:
+        """The text of the file."""
+        return self.source.text
 
     def at(self, node: _Placed) -> Location:
         """Return the location of a node."""
@@ -85,7 +117,7 @@ def every_node(tree: ast.Module) -> Sequence[ast.AST]:
     return walk(tree)
 
 
-class SyntaxFault(NamedTuple):
+class SyntaxFault(Named):
     """A file that Python cannot parse, with Python's message.
 
     `sure` is False where a newer Python may parse it.
@@ -110,23 +142,21 @@ def location_in(source: Source, position: Position) -> Location:
     return Location(source.path, position.line, column + 1)
 
 
-def parse(data: bytes, path: str, releases: tuple[Release, ...] = ()) -> Code | SyntaxFault:
+def parse(data: bytes, path: str, releases: Releases = ()) -> Code | SyntaxFault:
     """Parse the bytes of a Python file, as the newest Python of some releases does.
 
     It never raises: what Python refuses, also for its depth, is a SyntaxFault.
     """
     resolved = resolve_conflicts(data)
     try:
-        parsed = _parse(resolved.data if resolved is not None else data, path, releases)
-        if resolved is None:
+        parsed = _parse(resolved.data if resolved else data, path, releases)
+        if not resolved:
             return parsed
         if isinstance(parsed, Code):
             return parsed._replace(conflict=(resolved.message, Position(resolved.line, 1)))
         return parsed._replace(message=resolved.message, location=Location(path, resolved.line, 1))
     except (RecursionError, MemoryError):  # these depend on the process, so they are not kept
-        return SyntaxFault(
-            Source(path, data.decode("utf-8", "replace")), _TOO_DEEP, Location(path, 1, 1)
-        )
+        return SyntaxFault(Source.decoded(path, data), _TOO_DEEP, Location(path, 1, 1))
 
 
 def _decode(data: bytes, path: str) -> Source | SyntaxFault:
@@ -143,7 +173,7 @@ def _decode(data: bytes, path: str) -> Source | SyntaxFault:
             )
         text = data.decode(encoding)
     except (SyntaxError, ValueError, LookupError) as error:
-        source = Source(path, data.decode("utf-8", "replace"))
+        source = Source.decoded(path, data)
         return SyntaxFault(source, f"not readable as text: {error}", Location(path, 1, 1))
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     source = Source(path, text)
@@ -154,7 +184,7 @@ def _decode(data: bytes, path: str) -> Source | SyntaxFault:
 
 
 @reuse
-def _parse(data: bytes, path: str, releases: tuple[Release, ...]) -> Code | SyntaxFault:
+def _parse(data: bytes, path: str, releases: Releases) -> Code | SyntaxFault:
     source = _decode(data, path)
     if isinstance(source, SyntaxFault):
         return source
@@ -224,7 +254,8 @@ def _described(error: SyntaxError, line: str) -> tuple[str, str, int]:
     This is the reason, the message, which has the word or character where the reason says no more
     than a place, and the column. The versions name other places in f-strings.
     """
-    column, line = max(error.offset or 1, 1), line[:_MAX_SEARCHED]
+    column = max(error.offset or 1, 1)
+    line = line[:_MAX_SEARCHED]
     spans = [match.span() for match in re.finditer(_F_STRING, line)]
     is_inside = any(start + 1 < column <= end for start, end in spans)
     is_of_f_string = error.msg.startswith("f-string") or (error.text or line).rstrip("\n") != line
@@ -235,14 +266,15 @@ def _described(error: SyntaxError, line: str) -> tuple[str, str, int]:
         column = len(line) - len(rest) + 1
     reason = message = shared_message(error.msg)
     token = re.match(r"\w{1,30}|\S", line[column - 1 :])
-    if reason == "invalid syntax" and token is not None:
+    if reason == "invalid syntax" and token:
         message = f"{reason} at {token[0]!r}"
     return reason, message, column
 
 
 def parse_expression(text: str) -> ast.expr | SyntaxFault:
     """Return an expression as the Python of ROS 2 Jazzy reads it, or why it does not."""
-    source, at = Source("", text), Location("", 1, 1)
+    source = Source("", text)
+    at = Location("", 1, 1)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -267,7 +299,7 @@ def own_nodes(node: ast.AST) -> list[ast.AST]:
 
     Those of the functions and classes in it are not among them.
     """
-    nodes: list[ast.AST] = []
+    nodes = []
     pending = children(node) if isinstance(node, ast.FunctionDef | ast.ClassDef) else [node]
     while pending:
         part = pending.pop()
@@ -280,8 +312,8 @@ def own_nodes(node: ast.AST) -> list[ast.AST]:
 def bound_in(node: ast.FunctionDef | ast.Module) -> frozenset[str]:
     """Return the names that a function or module binds itself."""
     nodes = own_nodes(node)
-    declared: set[str] = set()  # names of a scope around this one
-    inner: set[ast.AST] = set()  # targets in comprehensions, which have scopes of their own
+    declared = set()  # names of a scope around this one
+    inner = set()  # targets in comprehensions, which have scopes of their own
     for part in nodes:
         if isinstance(part, ast.Global | ast.Nonlocal):
             declared.update(part.names)
@@ -297,7 +329,7 @@ def bound_in(node: ast.FunctionDef | ast.Module) -> frozenset[str]:
 def lines_of_docstrings(code: Code) -> set[int]:
     """Return the lines of texts that stand for themselves, such as docstrings."""
     lines: set[int] = set()
-    for node in every_node(code.tree):
+    for node in code.nodes:
         match node:
             case ast.Expr(value=ast.Constant(value=str())):
                 lines.update(range(node.lineno, (node.end_lineno or node.lineno) + 1))

@@ -6,6 +6,8 @@ from collections.abc import Container, Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
+from grader.base.grouping import Span
+from grader.base.patterns import on_use
 from grader.base.source import Edit, Edits, Source
 from grader.ros.known.python_names import python_names
 from grader.ros.python.bindings import names_bound
@@ -13,7 +15,9 @@ from grader.ros.python.library import USUAL_NAMES
 from grader.ros.python.parse import Code, SyntaxFault, parse, parse_expression
 from grader.ros.python.walking import walk
 
-_STRING = re.compile(
+_Placed = ast.expr | ast.stmt | ast.keyword
+
+_STRING = on_use(
     r"""
       \#[^\n]*
     | (?P<string>[rRbBfFuU]{0,2}(?:
@@ -24,11 +28,11 @@ _STRING = re.compile(
     """,
     re.DOTALL | re.VERBOSE,
 )
-_QUOTES = re.compile("[rRbBfFuU]*(\"\"\"|'''|\"|')")
+_QUOTES = on_use("[rRbBfFuU]*(\"\"\"|'''|\"|')")
 _MAX_DEPTH = 4  # of names that are replaced by their values
 _MAX_CODE = 2000  # characters
-_USE = re.compile(r"\bglob\.glob\b")
-_CAT = re.compile(r"\bcat(?=\s)")
+_USE = on_use(r"\bglob\.glob\b")
+_CAT = on_use(r"\bcat(?=\s)")
 
 
 class _Literal(NamedTuple):
@@ -74,7 +78,7 @@ class PythonFile:
         literals = []
         for match in _STRING.finditer(self.text):
             quotes = _QUOTES.match(match["string"] or "")  # none in a comment or a word
-            if quotes is not None:
+            if quotes:
                 start = match.start("string") + quotes.end()
                 end = match.end("string") - len(quotes[1])
                 literals.append(_Literal(self.text[start:end], start, end))
@@ -86,7 +90,7 @@ class PythonFile:
         text = self.text[start : start + byte].encode("utf-8", "surrogateescape")[:byte]
         return start + len(text.decode("utf-8", "surrogateescape"))
 
-    def span(self, node: ast.expr | ast.stmt | ast.keyword | ast.arg) -> tuple[int, int]:
+    def span(self, node: _Placed | ast.arg) -> Span:
         """Return the offsets of the start and the end of a node."""
         assert node.end_lineno is not None
         assert node.end_col_offset is not None
@@ -94,19 +98,19 @@ class PythonFile:
             node.end_lineno, node.end_col_offset
         )
 
-    def segment(self, node: ast.expr | ast.stmt | ast.keyword) -> str:
+    def segment(self, node: _Placed) -> str:
         """Return the text of a node."""
         start, end = self.span(node)
         return self.text[start:end]
 
-    def replaced(self, node: ast.expr | ast.stmt | ast.keyword, new: str) -> Edit:
+    def replaced(self, node: _Placed, new: str) -> Edit:
         """Return the edit that replaces a node."""
         return self.source.edit(*self.span(node), new)
 
     @cached_property
     def values(self) -> dict[str, ast.expr]:
         """The expressions that are bound to names."""
-        by_name: dict[str, ast.expr] = {}
+        by_name = {}
         for node in self.nodes:
             match node:
                 case ast.Assign(targets=[ast.Name(id=name)], value=value):
@@ -153,7 +157,7 @@ class PythonFile:
         if node not in self._plain:
             code = self.written(node)
             tree = _expression(code)
-            self._plain[node] = ast.unparse(tree) if tree is not None else code
+            self._plain[node] = ast.unparse(tree) if tree else code
         return self._plain[node]
 
     def names_in(self, code: str) -> set[str]:
@@ -204,8 +208,8 @@ class PythonFile:
         if not lines:
             return []
         body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
-        first = next(iter((*self.imports, *body)), None)
-        start = self.span(first)[0] if first is not None else len(self.text)
+        first = next(iter(self.imports + body), None)
+        start = self.span(first)[0] if first else len(self.text)
         lines.sort(key=lambda line: line.startswith("from"))
         return [self.source.edit(start, start, "".join(lines))]
 
@@ -242,7 +246,7 @@ def with_xacro(source: Source) -> Iterator[Edits]:
     if not source.path.endswith(".py"):
         return
     file = PythonFile(source)
-    for call in [*file.calls("read"), *file.calls("read_text")]:
+    for call in file.calls("read") + file.calls("read_text"):
         owner: ast.expr = call
         if isinstance(call.func, ast.Attribute):
             owner = file.meant(call.func.value)

@@ -12,6 +12,8 @@ from io import StringIO
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
+from grader.base.grouping import are_texts
+from grader.base.text import last_part
 from grader.ros.known.python_names import shared_message
 
 if TYPE_CHECKING:
@@ -123,7 +125,8 @@ class Undetermined(EvaluationSignal):
         follows_error: bool = False,
     ) -> None:
         super().__init__(message, at)
-        self.is_final, self.follows_error = is_final, follows_error
+        self.is_final = is_final
+        self.follows_error = follows_error
 
 
 # These are no dataclasses: making one takes 1 ms of the start of every command.
@@ -140,7 +143,9 @@ class Unknown:
     candidates: tuple[Value, ...] = ()  # the values of which it is one, if it is anything
 
     def __init__(self, reason: str, at: "Position", *, follows_error: bool = False) -> None:
-        self.reason, self.at, self.follows_error = reason, at, follows_error
+        self.reason = reason
+        self.at = at
+        self.follows_error = follows_error
 
     def as_signal(self, at: "Position | None" = None) -> Undetermined:
         """Return the signal that the value is needed at this place."""
@@ -163,12 +168,12 @@ class InertValue(Unknown):
 
 def one_of(values: Sequence[Value], reason: str, at: "Position") -> Unknown:
     """Return a value that is one of several; if only one is given, it may not be there."""
-    unknown, candidates = Unknown(reason, at), dict[int, Value]()  # by identity: each once
+    unknown, candidates = Unknown(reason, at), {}  # by identity: each once
     for value in values:
         is_open = isinstance(value, Unknown) and value.candidates
         for candidate in value.candidates if is_open else (value,):
             candidates[id(candidate)] = candidate
-    unknown.is_text = all(isinstance(value, str) for value in candidates.values())
+    unknown.is_text = are_texts(candidates.values())
     if len(candidates) <= _MAX_CANDIDATES:
         unknown.candidates = tuple(candidates.values())
     return unknown
@@ -192,7 +197,8 @@ class UnknownAttribute(Unknown):
 
     def __init__(self, owner: Unknown, name: str, at: "Position") -> None:
         super().__init__(owner.reason, at, follows_error=owner.follows_error)
-        self.owner, self.name = owner, name
+        self.owner = owner
+        self.name = name
 
 
 class QualifiedName:
@@ -203,7 +209,8 @@ class QualifiedName:
     """
 
     def __init__(self, name: str, *, is_defined: bool = True) -> None:
-        self.name, self.is_defined = name, is_defined
+        self.name = name
+        self.is_defined = is_defined
 
 
 class BoundMethod:
@@ -213,7 +220,9 @@ class BoundMethod:
     """
 
     def __init__(self, owner: Value, name: str, node: ast.expr | None = None) -> None:
-        self.owner, self.name, self.node = owner, name, node
+        self.owner = owner
+        self.name = name
+        self.node = node
 
 
 class Call:
@@ -241,7 +250,7 @@ class Call:
     @property
     def short(self) -> str:
         """The name without its module."""
-        return self.name.rpartition(".")[2]
+        return last_part(self.name)
 
     def argument(self, position: int, *names: str) -> Value:
         """Return an argument by its position or by one of its names; None where it is missing."""
@@ -268,8 +277,12 @@ class Function:
         at: "Position",
         local: frozenset[str] = frozenset(),
     ) -> None:
-        self.parameters, self.scope, self.defaults, self.body = parameters, scope, defaults, body
-        self.at, self.local = at, local
+        self.parameters = parameters
+        self.scope = scope
+        self.defaults = defaults
+        self.body = body
+        self.at = at
+        self.local = local
 
 
 class Scope:
@@ -284,7 +297,9 @@ class Scope:
         outer: "Scope | None" = None,
         local: frozenset[str] = frozenset(),
     ) -> None:
-        self.names, self.outer, self.local = names, outer, local
+        self.names = names
+        self.outer = outer
+        self.local = local
         self.returned: list[Value] = []  # by branches of which it is not known whether they run
 
     def find(self, name: str) -> Value:
@@ -293,7 +308,7 @@ class Scope:
         Raises KeyError, or EvaluationFails for one that is bound later.
         """
         scope: Scope | None = self
-        while scope is not None:
+        while scope:
             if name in scope.names:
                 return scope.names[name]
             if name in scope.local:
@@ -320,7 +335,9 @@ class PlainFunction:
     __slots__ = ("kind", "name", "run")
 
     def __init__(self, name: str, run: Callable[..., Value], kind: str = "plain") -> None:
-        self.name, self.run, self.kind = name, run, kind
+        self.name = name
+        self.run = run
+        self.kind = kind
 
 
 # The functions that are evaluated, by their full names; each of the second kind takes the
@@ -334,7 +351,8 @@ class Namespace:
     __slots__ = ("find", "name")
 
     def __init__(self, name: str, find: Callable[[str], Value]) -> None:
-        self.name, self.find = name, find
+        self.name = name
+        self.find = find
 
 
 class Items:
@@ -346,7 +364,7 @@ class Items:
     __slots__ = ("iterator",)
 
     def __init__(self, items: Iterable[Value]) -> None:
-        self.iterator: Iterator[Value] = iter(items)
+        self.iterator = iter(items)
 
 
 Items.__name__ = "iterator"  # as Python's messages name it
@@ -366,7 +384,7 @@ def list_parts(part: Value) -> Collection[Value]:
     if isinstance(part, list | tuple | range | set):
         return part
     if isinstance(part, VIEWS):
-        return [*part]
+        return list(part)
     return ()
 
 
@@ -425,7 +443,7 @@ def list_items(value: Value) -> list[Value]:
 def known(value: Value) -> Value:
     """Return a value if all of it is known. Raises Undetermined."""
     unknown = unknown_in(value)
-    if unknown is not None or isinstance(value, OPAQUE):
+    if unknown or isinstance(value, OPAQUE):
         refuse(unknown or value, "this value is not supported")
     return value
 
@@ -446,14 +464,15 @@ def explain_unknown(value: Value) -> str:
 
 def unknown_in(value: Value) -> Unknown | None:
     """Return the first unknown value in a value."""
-    pending, seen = [value], set[int]()
+    pending = [value]
+    seen = set()
     while pending:
         item = pending.pop()
         if isinstance(item, Unknown):
             return item
         if isinstance(item, list | tuple | dict) and id(item) not in seen:
             seen.add(id(item))
-            pending += reversed([*item.values()] if isinstance(item, dict) else [*item])
+            pending += reversed(list(item.values()) if isinstance(item, dict) else list(item))
     return None
 
 

@@ -7,7 +7,9 @@ it.
 
 import ast
 from ast import AST
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+
+from grader.base.grouping import Strings
 
 # Attributes in which no other node is.
 _PLAIN = frozenset(
@@ -18,7 +20,7 @@ _PLAIN = frozenset(
 )
 
 
-def _fields_with_nodes() -> Iterator[tuple[type[AST], tuple[str, ...]]]:
+def _fields_with_nodes() -> Iterator[tuple[type[AST], Strings]]:
     """Yield the kinds of nodes, each with its attributes in which other nodes may be."""
     for kind in vars(ast).values():
         if isinstance(kind, type) and issubclass(kind, AST):
@@ -26,12 +28,12 @@ def _fields_with_nodes() -> Iterator[tuple[type[AST], tuple[str, ...]]]:
             yield kind, fields if kind is not ast.Constant else ()
 
 
-_FIELDS: Mapping[type[AST], tuple[str, ...]] = dict(_fields_with_nodes())
+_FIELDS = dict(_fields_with_nodes())
 
 
 def children(node: AST) -> list[AST]:
     """Return the nodes right below a node, in the order of the grammar."""
-    nodes: list[AST] = []
+    nodes = []
     for field in _FIELDS[node.__class__]:
         value = getattr(node, field, None)
         if value.__class__ is list:

@@ -4,13 +4,13 @@ Each choice is one place with all that it may stand for: a way that is missing w
 certainty. Which one is meant is decided by reading the robot again.
 """
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 
 from grader.base import markup
+from grader.base.patterns import on_use
 from grader.base.problems import Fix
-from grader.base.slips import Slip
+from grader.base.slips import Slip, Slips
 from grader.base.source import Location, Source
 from grader.base.text import in_backticks
 from grader.ros.slips.element_forms import element_slips
@@ -48,7 +48,9 @@ from grader.ros.xacro.corrections import Refusal, respellings
 from grader.ros.xacro.macros import MacroError
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
-_XACRO = re.compile(r"xacro:|\$")
+_Lists = dict[str, list[str]]
+
+_XACRO = on_use(r"xacro:|\$")
 Choice = tuple[Slip, ...]  # what one slip may stand for
 
 
@@ -60,22 +62,22 @@ def list_choices(
     `refused` is what xacro refuses, and `fixes` are those of words for which ROS 2 rejects the
     robot. What hides other slips comes first: a text that is not read, a name that is not defined.
     """
-    roots: list[XacroNode] = []
+    roots = []
     for index, source in enumerate(sources):
         yield from _choices_of_text(source)
         if index:
             yield from _alone(rootless_slips(source))
         root = read_elements(source)
-        if root is not None:
+        if root:
             roots.append(root)
     of_xacro = [root for root in roots if _XACRO.search(root.place.source.text)]
     names, macros = _list_defined(of_xacro)
     if of_xacro:
-        nodes = [*chain.from_iterable(map(walk, of_xacro))]
+        nodes = list(chain.from_iterable(map(walk, of_xacro)))
         yield from _choices_of_xacro(sources, nodes, names, refused)
     for fix in fixes:
         yield (_slip_of_fix("ROS 2 rejects the file for", fix, fix.edits[0].location),)
-    named: set[str] = set()  # among them the links, which a macro may make
+    named = set()  # among them the links, which a macro may make
     has_gazebo = any("<gazebo" in source.text for source in sources)
     if has_gazebo:
         named = {node.attributes.get("name", "") for node in chain.from_iterable(map(walk, roots))}
@@ -86,24 +88,30 @@ def list_choices(
         yield from _choices_of_values(root, names, macros)
 
 
-def _list_defined(of_xacro: Iterable[XacroNode]) -> tuple[set[str], dict[str, list[str]]]:
+def _list_defined(of_xacro: Iterable[XacroNode]) -> tuple[set[str], _Lists]:
     """Return the names of properties and parameters, and the macros with their parameters."""
     names = {"pi"}
-    macros: dict[str, list[str]] = {}
+    macros: _Lists = {}
     for root in of_xacro:
         names |= list_names(root)
         macros |= list_macros(root)
     return names, macros
 
 
+_OF_TEXT = (
+    prefix_slips,
+    open_comment_slips,
+    root_slips,
+    nested_robot_slips,
+    early_end_slips,
+    loose_tag_slips,
+)
+
+
 def _choices_of_text(source: Source) -> Iterator[Choice]:
     """Yield the slips by which a text is no tree of elements, or another one."""
-    yield from _alone(prefix_slips(source))
-    yield from _alone(open_comment_slips(source))
-    yield from _alone(root_slips(source))
-    yield from _alone(nested_robot_slips(source))
-    yield from _alone(early_end_slips(source))
-    yield from _alone(loose_tag_slips(source))
+    for list_slips in _OF_TEXT:
+        yield from _alone(list_slips(source))
     ends = macro_end_slips(source) if "<xacro:macro" in source.text else ()
     if ends:
         yield ends
@@ -121,14 +129,15 @@ def _choices_of_xacro(
     yield from _alone(unmarked_slips(nodes, names))
     known = {""}  # the names and macros whose other ways were listed
     for refusal in refused:
-        error, place = refusal.error, refusal.place
+        error = refusal.error
+        place = refusal.place
         name = ""
         if isinstance(error, MacroError):
             source, start = place.written
             name = source.text[start + 1 : markup.name_end(source.text, start)]
-        elif refusal.unknown is not None:
+        elif refusal.unknown:
             name = refusal.unknown.name
-        ways = [*refused_expression_slips(*place.written, refusal.attribute, name)]
+        ways = list(refused_expression_slips(*place.written, refusal.attribute, name))
         if not ways:
             ways += _slips_of_refusal(refusal)
         if name not in known:
@@ -142,20 +151,18 @@ def _choices_of_xacro(
     yield from copied_call_choices(nodes)
 
 
-def _slips_of_refusal(refusal: Refusal) -> Iterator[Slip]:
+def _slips_of_refusal(refusal: Refusal) -> Slips:
     """Yield the correction of what xacro refuses, or the near names of one that is not known."""
     unknown = refusal.unknown
-    if refusal.correction is not None:
+    if refusal.correction:
         fix, at, _ = refusal.correction
         yield _slip_of_fix("xacro refuses", fix, at)
-    elif unknown is not None:
+    elif unknown:
         for edits, assumption in respellings(refusal, unknown, unknown.meant):
             yield _slip_of_fix("xacro refuses", Fix(edits, assumption), edits[0].location)
 
 
-def _choices_of_values(
-    root: XacroNode, names: set[str], macros: dict[str, list[str]]
-) -> Iterator[Choice]:
+def _choices_of_values(root: XacroNode, names: set[str], macros: _Lists) -> Iterator[Choice]:
     """Yield the slips in attributes and expressions of xacro."""
     text = root.place.source.text
     if "xacro:" in text:
@@ -172,7 +179,7 @@ def _slip_of_fix(verb: str, fix: Fix, at: Location) -> Slip:
     return Slip(fix.edits, f"{verb} {texts or 'this'}", fix.assumption, at, is_refused=True)
 
 
-def _alone(slips: Iterator[Slip]) -> Iterator[Choice]:
+def _alone(slips: Slips) -> Iterator[Choice]:
     """Yield slips that can be read in one way only."""
     for slip in slips:
         yield (slip,)

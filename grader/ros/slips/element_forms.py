@@ -1,7 +1,6 @@
 """The elements of a URDF in another form: as text, as children, in another place."""
 
-import re
-from collections.abc import Iterator, Mapping
+from itertools import starmap
 
 from grader.base import markup
 from grader.base.element_edits import (
@@ -11,8 +10,10 @@ from grader.base.element_edits import (
     with_attribute,
     without_element,
 )
+from grader.base.grouping import Strings, StringsByName
 from grader.base.markup import WORD_OF_VALUE
-from grader.base.slips import Slip, make_slip
+from grader.base.patterns import on_use
+from grader.base.slips import Slip, Slips, make_slip
 from grader.base.source import Edits, Source
 from grader.base.text import cut, quoted
 from grader.ros.slips.nodes import find_place
@@ -21,7 +22,7 @@ from grader.ros.xml.broken_tags import read_attributes
 from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN, PARTS, REQUIRED, TAGS
 
 _MAX_SHOWN = 60  # characters of a value
-_NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?|.*\$[{(].*")
+_NUMBER = on_use(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?|.*\$[{(].*")
 _POSE = 6  # numbers of a pose
 _BY_ATTRIBUTES = {
     ("size",): "box",
@@ -48,7 +49,7 @@ _REPEATED = ("visual", "collision", *_OF_ROBOT, *CHILDREN["robot"])
 _XACRO = ("xacro:macro", "xacro:if", "xacro:unless")
 
 
-def element_slips(root: XacroNode) -> Iterator[Slip]:
+def element_slips(root: XacroNode) -> Slips:
     """Yield the elements of a robot that are written in another form than a URDF has."""
     waiting: list[tuple[XacroNode, tuple[XacroNode, ...]]] = [(root, ())]
     while waiting:
@@ -60,7 +61,7 @@ def element_slips(root: XacroNode) -> Iterator[Slip]:
             waiting += [(child, (*around, node)) for child in reversed(node.elements)]
 
 
-def _find_slips(node: XacroNode, around: tuple[XacroNode, ...], parent: str) -> Iterator[Slip]:
+def _find_slips(node: XacroNode, around: tuple[XacroNode, ...], parent: str) -> Slips:
     if node.tag in TAGS:
         yield from _with_attributes_inside(node)
     if node.tag == "origin" and {*node.attributes} == {"xyz"}:
@@ -77,13 +78,13 @@ def _find_slips(node: XacroNode, around: tuple[XacroNode, ...], parent: str) -> 
         yield from _ends_in_one_tag(node)
 
 
-def _with_attributes_inside(node: XacroNode) -> Iterator[Slip]:
+def _with_attributes_inside(node: XacroNode) -> Slips:
     """Yield the element whose attributes are its text or its children, as in SDF."""
     if not node.children:
         return
     absent = [name for name in TAGS[node.tag].attributes if name not in node.attributes]
-    text = "".join(child for child in node.children if isinstance(child, str)).strip()
-    values: Mapping[str, str] = {}
+    text = node.text
+    values: StringsByName = {}
     removed: list[XacroNode] = []
     if text and not node.elements:
         values = _values_of_text(node.tag, text, absent)
@@ -105,9 +106,7 @@ def _with_attributes_inside(node: XacroNode) -> Iterator[Slip]:
     yield make_slip(edits, reaction, assumption)
 
 
-def _as_empty_element(
-    source: Source, start: int, node: XacroNode, values: Mapping[str, str]
-) -> Edits:
+def _as_empty_element(source: Source, start: int, node: XacroNode, values: StringsByName) -> Edits:
     """Return the edit that writes an element with attributes in place of what is inside of it."""
     end = markup.head_end(source.text, start)[0]
     head = source.text[start : end - 1].rstrip()
@@ -118,7 +117,7 @@ def _as_empty_element(
     return (source.edit(start, whole, f"{head}{attributes_text(values)}{closing}"),)
 
 
-def _values_of_text(tag: str, text: str, absent: list[str]) -> Mapping[str, str]:
+def _values_of_text(tag: str, text: str, absent: list[str]) -> StringsByName:
     """Return the attributes that the text of an element stands for."""
     if "=" in text:
         given = read_attributes(tag, text) or {}
@@ -135,10 +134,11 @@ def _values_of_text(tag: str, text: str, absent: list[str]) -> Mapping[str, str]
     return {}
 
 
-def _attributes_beside(parent: XacroNode) -> Iterator[Slip]:
+def _attributes_beside(parent: XacroNode) -> Slips:
     """Yield the elements that are attributes of one beside them: <rpy> beside <origin>."""
     for node in parent.elements:
-        name, value = node.tag, _read_value(node)
+        name = node.tag
+        value = _read_value(node)
         if name in TAGS or name not in PARTS or not _fits(name, value):
             continue
         owners = [
@@ -156,7 +156,7 @@ def _attributes_beside(parent: XacroNode) -> Iterator[Slip]:
         yield Slip(edits, reaction, assumption, edits[1].location)
 
 
-def _pose_in_one_attribute(node: XacroNode) -> Iterator[Slip]:
+def _pose_in_one_attribute(node: XacroNode) -> Slips:
     """Yield the origin whose xyz has the numbers of rpy, too."""
     tokens = WORD_OF_VALUE.findall(node.attributes["xyz"])
     if len(tokens) == _POSE and all(map(_NUMBER.fullmatch, tokens)):
@@ -169,7 +169,7 @@ def _pose_in_one_attribute(node: XacroNode) -> Iterator[Slip]:
         yield make_slip(edits, "xyz of <origin> has six numbers", assumption)
 
 
-def _main_attributes(tag: str) -> tuple[str, ...]:
+def _main_attributes(tag: str) -> Strings:
     """Return the attributes without which an element says nothing."""
     if tag == "axis":
         return ("xyz",)
@@ -178,7 +178,8 @@ def _main_attributes(tag: str) -> tuple[str, ...]:
 
 def _fits(name: str, text: str) -> bool:
     """Return whether a text has the numbers of an attribute, or is one word."""
-    tokens, parts = WORD_OF_VALUE.findall(text), PARTS.get(name, ())
+    tokens = WORD_OF_VALUE.findall(text)
+    parts = PARTS.get(name, ())
     if parts:
         return len(tokens) == len(parts) and all(map(_NUMBER.fullmatch, tokens))
     return len(tokens) == 1
@@ -186,10 +187,10 @@ def _fits(name: str, text: str) -> bool:
 
 def _values_of_children(
     node: XacroNode, absent: list[str]
-) -> tuple[Mapping[str, str], list[XacroNode]]:
+) -> tuple[StringsByName, list[XacroNode]]:
     """Return the attributes that the children of an element stand for, and these children."""
-    values: dict[str, str] = {}
-    removed: list[XacroNode] = []
+    values = {}
+    removed = []
     known = CHILDREN.get(node.tag, ())
     for child in node.elements:
         name = child.tag
@@ -206,17 +207,17 @@ def _values_of_children(
 
 def _read_value(node: XacroNode) -> str:
     """Return the one value that an element has: its text, or that of its only attribute."""
-    text = "".join(child for child in node.children if isinstance(child, str)).strip()
+    text = node.text
     if node.elements or (text and node.attributes) or len(node.attributes) > 1:
         return ""
     return text or next(iter(node.attributes.values()), "")
 
 
-def _named_otherwise(node: XacroNode) -> Iterator[Slip]:
+def _named_otherwise(node: XacroNode) -> Slips:
     """Yield the shape of another word that has the attributes of one: <cube size="1 2 3"/>."""
     given = node.attributes
     shape = _BY_ATTRIBUTES.get(tuple(sorted(given)), "")
-    is_fitting = all(_fits(name, value) for name, value in given.items())
+    is_fitting = all(starmap(_fits, given.items()))
     if not shape or not is_fitting or node.tag.lower() in _NO_SHAPES or ":" in node.tag:
         return
     source, start = find_place(node)
@@ -225,7 +226,7 @@ def _named_otherwise(node: XacroNode) -> Iterator[Slip]:
     yield make_slip(renamed_tag(source, start, shape), reaction, assumption)
 
 
-def _misplaced(node: XacroNode, parent: XacroNode, around: XacroNode) -> Iterator[Slip]:
+def _misplaced(node: XacroNode, parent: XacroNode, around: XacroNode) -> Slips:
     """Yield the element that belongs beside the one that it is in: <axis> in <child>."""
     tag = node.tag
     if (tag not in TAGS and tag not in _OF_ROBOT) or tag in ATTRIBUTES.get(parent.tag, ()):
@@ -254,7 +255,7 @@ def _misplaced(node: XacroNode, parent: XacroNode, around: XacroNode) -> Iterato
     yield Slip((removed, moved), reaction, assumption, source.at(start))
 
 
-def _without_geometry(node: XacroNode, parent: XacroNode) -> Iterator[Slip]:
+def _without_geometry(node: XacroNode, parent: XacroNode) -> Slips:
     """Yield the shape that is directly in <visual> or <collision>."""
     if any(child.tag == "geometry" for child in parent.elements):
         return
@@ -269,11 +270,12 @@ def _without_geometry(node: XacroNode, parent: XacroNode) -> Iterator[Slip]:
     yield make_slip((edit,), reaction, assumption)
 
 
-def _ends_in_one_tag(joint: XacroNode) -> Iterator[Slip]:
+def _ends_in_one_tag(joint: XacroNode) -> Slips:
     """Yield the joint whose parent and child are attributes of one tag."""
     present = {child.tag for child in joint.elements}
     for node in joint.elements:
-        given, names = node.attributes, ("", "")
+        given = node.attributes
+        names = ("", "")
         if node.tag == "parent" and {*given} == {"link", "child"}:
             names = ("link", "child")
         elif node.tag == "child" and {*given} == {"link", "parent"}:
@@ -295,7 +297,7 @@ def _ends_in_one_tag(joint: XacroNode) -> Iterator[Slip]:
         yield from _ends_as_attributes(joint)
 
 
-def _ends_as_attributes(joint: XacroNode) -> Iterator[Slip]:
+def _ends_as_attributes(joint: XacroNode) -> Slips:
     """Yield the joint whose parent and child are its attributes."""
     source, start = find_place(joint)
     end, is_empty = markup.head_end(source.text, start)

@@ -1,32 +1,32 @@
 """What a text has between its tags and around its robot: a tag without its <, an early </robot>."""
 
 import re
-from collections.abc import Iterator
 
 from grader.base import markup
-from grader.base.slips import Slip, make_slip
+from grader.base.patterns import on_use
+from grader.base.slips import Slip, Slips, make_slip
 from grader.base.source import Source
 from grader.base.text import comment_spans, cut
 from grader.ros.xml.urdf_format import TAGS
 
 _MAX_SHOWN = 60  # characters of a tag
 _MAX_LENGTH = 2000  # characters of a text between two tags
-_MARKUP = re.compile(r"(?s)<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<[^<>]*>?")
-_START = re.compile(
+_MARKUP = on_use(r"(?s)<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<[^<>]*>?")
+_START = on_use(
     r"""(?:^|(?<=\s))(?P<name>[\w:.-]+)(?:\s+[\w:.-]+\s*=\s*(?:"[^"]*"|'[^']*'))+\s*/?>"""
 )
-_BARE = re.compile(r"(?:^|(?<=\s))(?P<name>visual|collision|geometry|inertial)\s*>")
-_END = re.compile(r"(?:^|(?<=\s))/(?P<name>[\w:.-]+)\s*>")
-_NAMED = re.compile(r"""<(?:link|joint)\s[^<>]*?name\s*=\s*["']([^"'<>]*)["']""")
-_ROBOT = re.compile(r"<robot(?=[\s>])")
-_MARK_OF_COMMENT = re.compile("<!--|-->")
-_END_OF_COMMENT = re.compile(r"(?<!\s)\s*+(?:--\s*+>?|->|-)$")  # as it is misspelt
-_DISABLED = re.compile(r"(?i)\b(?:not?|todo|old|off|disabled|unused|removed|instead|later)\b")
-_ELEMENT = re.compile(r"<(?:link|joint|visual|collision|inertial|material|xacro:\w+)[\s/>]")
-_CLOSED = re.compile(r"(?s)<!--.*?(?:-->|\Z)|</robot\s*>")
+_BARE = on_use(r"(?:^|(?<=\s))(?P<name>visual|collision|geometry|inertial)\s*>")
+_END = on_use(r"(?:^|(?<=\s))/(?P<name>[\w:.-]+)\s*>")
+_NAMED = on_use(r"""<(?:link|joint)\s[^<>]*?name\s*=\s*["']([^"'<>]*)["']""")
+_ROBOT = on_use(r"<robot(?=[\s>])")
+_MARK_OF_COMMENT = on_use("<!--|-->")
+_END_OF_COMMENT = on_use(r"(?<!\s)\s*+(?:--\s*+>?|->|-)$")  # as it is misspelt
+_DISABLED = on_use(r"(?i)\b(?:not?|todo|old|off|disabled|unused|removed|instead|later)\b")
+_ELEMENT = on_use(r"<(?:link|joint|visual|collision|inertial|material|xacro:\w+)[\s/>]")
+_CLOSED = on_use(r"(?s)<!--.*?(?:-->|\Z)|</robot\s*>")
 
 
-def loose_tag_slips(source: Source) -> Iterator[Slip]:
+def loose_tag_slips(source: Source) -> Slips:
     """Yield the tags that lack their <, so that they are text."""
     position = 0
     text = source.text
@@ -35,7 +35,7 @@ def loose_tag_slips(source: Source) -> Iterator[Slip]:
         position = match.end()
 
 
-def _tags_in(source: Source, start: int, end: int) -> Iterator[Slip]:
+def _tags_in(source: Source, start: int, end: int) -> Slips:
     text = source.text[start:end]
     if ">" not in text or len(text) > _MAX_LENGTH:
         return
@@ -50,7 +50,7 @@ def _tags_in(source: Source, start: int, end: int) -> Iterator[Slip]:
                 yield make_slip((source.edit(at, at, "<"),), reaction, assumption)
 
 
-def early_end_slips(source: Source) -> Iterator[Slip]:
+def early_end_slips(source: Source) -> Slips:
     """Yield the end of the robot after which links or joints follow, and another end.
 
     A name that is there on both sides is one of a text that was left over.
@@ -71,7 +71,7 @@ def early_end_slips(source: Source) -> Iterator[Slip]:
     yield make_slip((edit,), reaction, assumption)
 
 
-def nested_robot_slips(source: Source) -> Iterator[Slip]:
+def nested_robot_slips(source: Source) -> Slips:
     """Yield the <robot> inside of another one, whose content is that of the robot."""
     text = source.text
     starts = [match.start() for match in _ROBOT.finditer(text)]
@@ -88,7 +88,7 @@ def nested_robot_slips(source: Source) -> Iterator[Slip]:
     yield Slip(edits, "ROS 2 ignores <robot> in <robot>", assumption, source.at(inner))
 
 
-def open_comment_slips(source: Source) -> Iterator[Slip]:
+def open_comment_slips(source: Source) -> Slips:
     """Yield the comments of one line whose end is missing, so that elements are in them.
 
     One that may end after the next comment is left as it is, and one that says that a part is not

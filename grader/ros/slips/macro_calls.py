@@ -1,26 +1,26 @@
 """Calls of macros that do not fit the parameters, and calls that are copies of others."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import chain
 
 from grader.base.element_edits import with_attribute
-from grader.base.slips import Slip, make_slip
+from grader.base.grouping import StringsByName
+from grader.base.patterns import on_use
+from grader.base.slips import Slip, Slips, make_slip
 from grader.base.text import cut
 from grader.ros.slips.nodes import find_place, list_all_values
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 from grader.ros.xml.urdf_format import TAGS
 
 _MAX_SHOWN = 60  # characters of parameters
-_EXPRESSION = re.compile(r"\$\{([^{}]*)\}")
-_NAME = re.compile(r"[^\W\d]\w*")
-_EQUALS = re.compile(r"(?<!\s)\s*+:?=.*")
+_EXPRESSION = on_use(r"\$\{([^{}]*)\}")
+_NAME = on_use(r"[^\W\d]\w*")
+_EQUALS = on_use(r"(?<!\s)\s*+:?=.*")
 # a:1, a=:1 and a = : 1 for a:=1
-_COLON = re.compile(r"(?<![\w:])(?P<name>[^\W\d]\w*)(?:\s*=\s*:\s*|:(?![=\s]))")
+_COLON = on_use(r"(?<![\w:])(?P<name>[^\W\d]\w*)(?:\s*=\s*:\s*|:(?![=\s]))")
 # , or ; between parameters, which xacro takes for a part of the name or of the default before it
-_SEPARATOR = re.compile(
-    r"\$\{[^{}]*\}|'[^']*'|(?P<separator>(?:(?<!\s)\s++)?[,;](?=\s|\Z|[*^\W\d]))"
-)
+_SEPARATOR = on_use(r"\$\{[^{}]*\}|'[^']*'|(?P<separator>(?:(?<!\s)\s++)?[,;](?=\s|\Z|[*^\W\d]))")
 _OTHER_SIDES = {
     "left": ("right",),
     "right": ("left",),
@@ -31,7 +31,7 @@ _OTHER_SIDES = {
 _OWN = ("property", "include", "arg", "macro", "if", "unless", "insert_block")
 
 
-def parameter_slips(nodes: Sequence[XacroNode], called: str) -> Iterator[Slip]:
+def parameter_slips(nodes: Sequence[XacroNode], called: str) -> Slips:
     """Yield the ways in which the parameters of a macro fit its calls."""
     macros = []
     for node in nodes:
@@ -69,7 +69,7 @@ def _named_in_calls(
     used = _list_used(macro)
     absent = [name for name in given if name not in names]
     if absent and used.issuperset(absent):
-        yield " ".join((*words, *absent))
+        yield " ".join(words + absent)
         unused = [name for name in names if name not in {*given, *used}]
         if len(absent) == len(unused) == 1:
             yield _replace_word(words, words[names.index(unused[0])], absent[0])
@@ -77,7 +77,7 @@ def _named_in_calls(
 
 def _list_used(macro: XacroNode) -> set[str]:
     """Return the names that expressions inside of a macro use."""
-    names: set[str] = set()
+    names = set()
     for value in list_all_values(node for node in walk(macro) if node is not macro):
         for inner in _EXPRESSION.findall(value.text):
             names.update(_NAME.findall(inner))
@@ -107,7 +107,7 @@ def _starred(macro: XacroNode, calls: Iterable[XacroNode]) -> Iterator[str]:
 
 def copied_call_choices(nodes: Sequence[XacroNode]) -> Iterator[tuple[Slip, ...]]:
     """Yield the later of two calls that give the same words, with the other side in one of them."""
-    by_macro: dict[str, list[Mapping[str, str]]] = {}
+    by_macro: dict[str, list[StringsByName]] = {}
     for node in nodes:
         if not node.tag.startswith("xacro:") or node.tag.removeprefix("xacro:") in _OWN:
             continue
@@ -120,8 +120,8 @@ def copied_call_choices(nodes: Sequence[XacroNode]) -> Iterator[tuple[Slip, ...]
 
 
 def _on_other_side(
-    call: XacroNode, words: Mapping[str, str], others: Collection[Mapping[str, str]]
-) -> Iterator[Slip]:
+    call: XacroNode, words: StringsByName, others: Collection[StringsByName]
+) -> Slips:
     """Yield the call with the other side in one of its words, if no other call gives that."""
     source, start = find_place(call)
     for name, text in words.items():

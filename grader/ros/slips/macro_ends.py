@@ -1,15 +1,16 @@
 """The places where the end tag of a macro may be missing."""
 
 import re
-from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.base import markup
-from grader.base.slips import Slip
+from grader.base.grouping import Span
+from grader.base.patterns import on_use
+from grader.base.slips import Slip, Slips
 from grader.base.source import Source
 
 _MAX_PLACES = 15
-_TAG = re.compile(
+_TAG = on_use(
     r"(?s)<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<(?P<end>/?)(?P<name>[\w:.-]+)"
 )
 
@@ -19,7 +20,7 @@ class _Open(NamedTuple):
 
     name: str
     start: int
-    children: list[tuple[int, int]]  # the offsets of each child
+    children: list[Span]  # the offsets of each child
 
 
 def macro_end_slips(source: Source) -> tuple[Slip, ...]:
@@ -35,8 +36,8 @@ def macro_end_slips(source: Source) -> tuple[Slip, ...]:
 
 def _find_unclosed(text: str) -> list[_Open]:
     """Return the macros that are open where an element around them ends."""
-    opened: list[_Open] = []
-    unclosed: list[_Open] = []
+    opened = []
+    unclosed = []
     for match in _TAG.finditer(text):
         name = match["name"]
         if not name:
@@ -59,11 +60,11 @@ def _find_unclosed(text: str) -> list[_Open]:
     return unclosed
 
 
-def _end_after_children(source: Source, macro: _Open) -> Iterator[Slip]:
+def _end_after_children(source: Source, macro: _Open) -> Slips:
     """Yield the slips that end a macro after one of its children."""
     text = source.text
     named = markup.attribute(text, macro.start, "name")
-    if named is None:
+    if not named:
         return
     name = text[slice(*named.value)]
     call = re.compile(rf"<xacro:{re.escape(name.removeprefix('xacro:'))}(?![\w:.-])")

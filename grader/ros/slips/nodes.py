@@ -16,7 +16,8 @@ _MAX_LENGTH = 500  # characters of a value
 
 def read_elements(source: Source) -> XacroNode | None:
     """Return the root element of a text, also after the edits that repair it; None without one."""
-    data, budget = source.text.encode("utf-8", "surrogateescape"), Budget()
+    data = source.text.encode("utf-8", "surrogateescape")
+    budget = Budget()
     try:
         return _read(data, source.path, budget)
     except (EvaluationFails, Undetermined, OutOfBudget):

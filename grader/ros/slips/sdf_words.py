@@ -3,11 +3,11 @@
 The children of a <plugin> are its own.
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 
 from grader.base.element_edits import renamed_attribute, renamed_tag
 from grader.base.names import folded
-from grader.base.slips import Slip, make_slip
+from grader.base.slips import Slips, make_slip
 from grader.ros.slips.nodes import find_place
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
@@ -27,7 +27,7 @@ _WORDS = frozenset(_TEXT.split())
 _BY_LETTERS = {folded(word): word for word in _WORDS}
 
 
-def gazebo_slips(root: XacroNode, named: Collection[str]) -> Iterator[Slip]:
+def gazebo_slips(root: XacroNode, named: Collection[str]) -> Slips:
     """Yield the tags in <gazebo> that differ from those of a sensor in their case or a separator.
 
     Also yield the attribute of <gazebo> that has the name of a link; `named` are all names in the
@@ -54,7 +54,7 @@ def gazebo_slips(root: XacroNode, named: Collection[str]) -> Iterator[Slip]:
                 waiting += reversed(node.elements)
 
 
-def _reference_slips(gazebo: XacroNode, named: Collection[str]) -> Iterator[Slip]:
+def _reference_slips(gazebo: XacroNode, named: Collection[str]) -> Slips:
     """Yield the one attribute of <gazebo> that has the name of a link."""
     given = gazebo.attributes
     if len(given) != 1 or "reference" in given:
@@ -68,7 +68,7 @@ def _reference_slips(gazebo: XacroNode, named: Collection[str]) -> Iterator[Slip
         yield make_slip(edits, reaction, assumption)
 
 
-def _attribute_slips(sensor: XacroNode) -> Iterator[Slip]:
+def _attribute_slips(sensor: XacroNode) -> Slips:
     """Yield the attributes of a sensor that differ from its own in their case."""
     for name in sensor.attributes:
         meant = name.lower()

@@ -4,36 +4,37 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from functools import partial
 
-from grader.base.slips import Slip, make_slip
+from grader.base.patterns import on_use
+from grader.base.slips import Slip, Slips, make_slip
 from grader.base.source import Edit, Source
-from grader.base.text import cut
+from grader.base.text import blanked, cut
 from grader.ros.slips.nodes import WrittenValue, find_place, list_all_values, list_values
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 from grader.ros.xml.urdf_format import PARTS
 
 _MAX_PLACES = 8  # where a brace may be missing
 _MAX_SHOWN = 60
-_DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+\s*")
-_EXPRESSION = re.compile(r"\$\{([^}$]*)\}")
+_DECIMAL_COMMA = on_use(r"\s*[-+]?\d+,\d+\s*")
+_EXPRESSION = on_use(r"\$\{([^}$]*)\}")
 _COMMANDS = r"(?:find|arg|env|optenv|eval|dirname|cwd|anon)\b"
 # $(a / 4) with an operator, and $[a / 4]: what is in them is no substitution.
-_IN_PARENTHESES = re.compile(rf"\$\((?!\s*{_COMMANDS})((?:[^()$]|\([^()$]*\))*)\)")
-_IN_BRACKETS = re.compile(r"\$\[([^\[\]$]*)\]")
+_IN_PARENTHESES = on_use(rf"\$\((?!\s*{_COMMANDS})((?:[^()$]|\([^()$]*\))*)\)")
+_IN_BRACKETS = on_use(r"\$\[([^\[\]$]*)\]")
 # ${{a}} and ${a}}, and {a / 4} or $ {a / 4} with a name that is known.
-_MIXED = re.compile(r"\$\(((?:[^()${}]|\([^()${}]*\))*)\}")  # $(a / 4}
-_BARE = re.compile(r"(?:\$(?!\())?\s*+((?=[^*/+-]*+[*/+-])[\w\s.+*/()-]++)")  # a / 4, $a / 4
-_IN_BRACES = re.compile(r"\$\{\{?([^{}$]*)\}\}")
-_WITHOUT_DOLLAR = re.compile(r"(?<![${])(?:\$\s+)?\{([^{}$]*)\}")
+_MIXED = on_use(r"\$\(((?:[^()${}]|\([^()${}]*\))*)\}")  # $(a / 4}
+_BARE = on_use(r"(?:\$(?!\())?\s*+((?=[^*/+-]*+[*/+-])[\w\s.+*/()-]++)")  # a / 4, $a / 4
+_IN_BRACES = on_use(r"\$\{\{?([^{}$]*)\}\}")
+_WITHOUT_DOLLAR = on_use(r"(?<![${])(?:\$\s+)?\{([^{}$]*)\}")
 # {side}, $ {side}, $(side), $side
-_UNMARKED = re.compile(
+_UNMARKED = on_use(
     r"\$\{+[^{}]*+\}+|(?:\$\s*+)?\{\s*+(?P<brace>[^\W\d]\w*)\s*\}"
     r"|\$\(\s*(?P<paren>[^\W\d]\w*)\s*\)|\$(?P<bare>[^\W\d]\w*)"
 )
-_OPERATOR = re.compile(r"[-+*/%<>=]|\b(?:and|or|not|if)\b")
-_WORDS = re.compile(r"\b[^\W\d]\w*")
-_TEXT_IN_QUOTES = re.compile(r"('[^']*'|\"[^\"]*\")")
-_SINGLE_EQUALS = re.compile(r"(?<![=!<>])=(?!=)")
-_TIMES = re.compile(
+_OPERATOR = on_use(r"[-+*/%<>=]|\b(?:and|or|not|if)\b")
+_WORDS = on_use(r"\b[^\W\d]\w*")
+_TEXT_IN_QUOTES = on_use(r"('[^']*'|\"[^\"]*\")")
+_SINGLE_EQUALS = on_use(r"(?<![=!<>])=(?!=)")
+_TIMES = on_use(
     r"(?<=[\w.)])\s+[xX]\s+(?=[\w.(])|(?<=\d)\s*[xX]\s*(?=[\d.(])|(?:(?<!\s)\s++)?[×·∙]\s*"
 )
 # Signs that stand for those of Python in an expression.
@@ -65,20 +66,19 @@ def expression_slips(root: XacroNode, names: set[str]) -> Iterator[tuple[Slip, .
 
 def _list_ways(node: XacroNode, value: WrittenValue, names: set[str]) -> list[str]:
     """Return the ways to read a value with an expression."""
-    text, name = value.text, value.attribute.name
+    text = value.text
+    name = value.attribute.name
     ways: list[str] = []
     if "$" in text or "{" in text:
         is_condition = node.tag in ("xacro:if", "xacro:unless")
         ways += _read_text(text, names, is_condition=is_condition)
     bare = _BARE.fullmatch(text)
-    if bare is not None and not ways and _is_number(node, name):
+    if bare and not ways and _is_number(node, name):
         ways += [f"${{{bare[1]}}}"] if names.issuperset(_WORDS.findall(bare[1])) else []
     return ways
 
 
-def refused_expression_slips(
-    source: Source, start: int, attribute: str | None, name: str
-) -> Iterator[Slip]:
+def refused_expression_slips(source: Source, start: int, attribute: str | None, name: str) -> Slips:
     """Yield the ways to read an expression that xacro refuses: ** for ^, and a text in quotes.
 
     A `name` that is not known may be such a text where it is compared: ${side == left}.
@@ -99,12 +99,12 @@ def refused_expression_slips(
             yield _slip(value, new)
 
 
-def unmarked_slips(nodes: Iterable[XacroNode], names: Collection[str]) -> Iterator[Slip]:
+def unmarked_slips(nodes: Iterable[XacroNode], names: Collection[str]) -> Slips:
     """Yield the one slip of all known names that have another form than ${side}.
 
     Such a form is {side}, $ {side}, $(side) or $side.
     """
-    edits: list[Edit] = []
+    edits = []
     for value in list_all_values(nodes):
         new = _UNMARKED.sub(partial(_mark, names), value.text)
         if new != value.text and value.attribute.name != "params":
@@ -112,16 +112,16 @@ def unmarked_slips(nodes: Iterable[XacroNode], names: Collection[str]) -> Iterat
     yield from _slip_of_all(edits, is_refused=False)
 
 
-def decimal_comma_slips(nodes: Iterable[XacroNode]) -> Iterator[Slip]:
+def decimal_comma_slips(nodes: Iterable[XacroNode]) -> Slips:
     """Yield the one slip of all numbers with a decimal comma that properties and calls give."""
-    edits: list[Edit] = []
+    edits = []
     for value in list_all_values(node for node in nodes if node.tag.startswith("xacro:")):
         if _DECIMAL_COMMA.fullmatch(value.text):
             edits.append(value.edit(value.text.replace(",", ".")))
     yield from _slip_of_all(edits, is_refused=True)
 
 
-def _slip_of_all(edits: Sequence[Edit], *, is_refused: bool) -> Iterator[Slip]:
+def _slip_of_all(edits: Sequence[Edit], *, is_refused: bool) -> Slips:
     """Yield the one slip of all values that are written in the same wrong way."""
     if edits:
         old, new = (cut(text, _MAX_SHOWN) for text in (edits[0].old, edits[0].new))
@@ -150,7 +150,7 @@ def _slip(value: WrittenValue, new: str) -> Slip:
 
 def list_names(root: XacroNode) -> set[str]:
     """Return the names of properties and of parameters that a file has."""
-    names: set[str] = set()
+    names = set()
     for node in walk(root):
         if node.tag == "xacro:property":
             names.add(node.attributes.get("name", ""))
@@ -194,9 +194,9 @@ def _with_brace(text: str, names: set[str]) -> Iterator[str]:
 
     A ) or ] without its opening one stands for it.
     """
-    start = _EXPRESSION.sub(lambda match: " " * len(match[0]), text).index("${")
+    start = _EXPRESSION.sub(blanked, text).index("${")
     end = text.find("$", start + 2)
-    ways: list[str] = []
+    ways = []
     searched = text[start : end if end >= 0 else None]
     for place in re.finditer(r"(?<=\S)(?=\s|\Z)|(?=[)\]_/.])", searched):
         at = start + place.end()

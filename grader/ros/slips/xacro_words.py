@@ -1,19 +1,20 @@
 """The attributes of xacro's own tags that have another name, and values of calls without a name."""
 
-import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 
 from grader.base import markup
 from grader.base.element_edits import attributes_text, renamed_attribute
+from grader.base.grouping import StringsByName
 from grader.base.names import near
-from grader.base.slips import Slip, make_slip
+from grader.base.patterns import on_use
+from grader.base.slips import Slip, Slips, make_slip
 from grader.base.source import Source
 from grader.base.text import cut
 from grader.ros.slips.nodes import find_place
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
 # The attributes that a tag of xacro has where it is written in full, and others that it may have.
-_USUAL: Mapping[str, tuple[str, ...]] = {
+_USUAL = {
     "xacro:property": ("name", "value"),
     "xacro:macro": ("name", "params"),
     "xacro:insert_block": ("name",),
@@ -24,29 +25,29 @@ _USUAL: Mapping[str, tuple[str, ...]] = {
     "xacro:attribute": ("name", "value"),
 }
 _MAX_SHOWN = 60  # characters of a text
-_CALL = re.compile(r"<xacro:(?P<name>[\w.-]++)(?P<rest>[^<>]*+)>")
-_VALUE = re.compile(
+_CALL = on_use(r"<xacro:(?P<name>[\w.-]++)(?P<rest>[^<>]*+)>")
+_VALUE = on_use(
     r"""(?:(?<![\w.:-])(?P<name>[\w.:-]++)[\s=:]*+|=\s*+)?(?P<quoted>"[^"]*"|'[^']*')"""
 )
-_OTHERS: Mapping[str, tuple[str, ...]] = {
+_OTHERS = {
     "xacro:property": ("default", "remove", "scope", "lazy_eval"),
     "xacro:include": ("ns", "optional"),
 }
 
 
-def attribute_slips(root: XacroNode) -> Iterator[Slip]:
+def attribute_slips(root: XacroNode) -> Slips:
     """Yield the attributes of xacro's tags that can only be another one: param= for params=.
 
     An attribute that xacro does not have is the one that the tag usually has and lacks.
     """
     for node in walk(root):
         usual = _USUAL.get(node.tag, ())
-        known = (*usual, *_OTHERS.get(node.tag, ()))
+        known = usual + _OTHERS.get(node.tag, ())
         unknown = [name for name in node.attributes if name not in known and ":" not in name]
         lacking = [name for name in usual if name not in node.attributes]
         if "default" in node.attributes and node.tag == "xacro:property":
             lacking.remove("value")
-        text = "".join(child for child in node.children if isinstance(child, str)).strip()
+        text = node.text
         if text and len(lacking) == 1 and not unknown and not node.elements:
             yield _with_attributes(node, {lacking[0]: text})
         for name in unknown if usual else ():
@@ -57,7 +58,7 @@ def attribute_slips(root: XacroNode) -> Iterator[Slip]:
                 yield _renamed(node, name, meant)
 
 
-def _with_attributes(node: XacroNode, values: Mapping[str, str]) -> Slip:
+def _with_attributes(node: XacroNode, values: StringsByName) -> Slip:
     """Return the slip of a tag that has attributes as its text or as its children."""
     source, start = find_place(node)
     head = markup.head_end(source.text, start)[0]
@@ -77,7 +78,7 @@ def _renamed(node: XacroNode, name: str, meant: str) -> Slip:
     return Slip(edits, reaction, assumption, node.place.at(name))
 
 
-def nameless_slips(source: Source, macros: Mapping[str, Collection[str]]) -> Iterator[Slip]:
+def nameless_slips(source: Source, macros: Mapping[str, Collection[str]]) -> Slips:
     """Yield the values without a name in calls that lack one parameter of a macro.
 
     `macros` has the parameters of each that have no default.
@@ -97,7 +98,7 @@ def nameless_slips(source: Source, macros: Mapping[str, Collection[str]]) -> Ite
             yield make_slip((edit,), reaction, assumption, is_refused=True)
 
 
-def child_slips(root: XacroNode, macros: Mapping[str, Collection[str]]) -> Iterator[Slip]:
+def child_slips(root: XacroNode, macros: Mapping[str, Collection[str]]) -> Slips:
     """Yield the calls that have parameters of a macro as elements: <y>0.1</y> for y="0.1"."""
     for node in walk(root):
         needed = macros.get(node.tag.removeprefix("xacro:"), ())
@@ -110,7 +111,7 @@ def child_slips(root: XacroNode, macros: Mapping[str, Collection[str]]) -> Itera
 
 def _texts_of_children(node: XacroNode, names: Collection[str]) -> dict[str, str]:
     """Return the texts of children with these tags that have nothing else."""
-    texts: dict[str, str] = {}
+    texts = {}
     for child in node.elements:
         text = "".join(part for part in child.children if isinstance(part, str)).strip()
         if child.tag in names and text and not (child.attributes or child.elements):
@@ -120,7 +121,7 @@ def _texts_of_children(node: XacroNode, names: Collection[str]) -> dict[str, str
 
 def list_macros(root: XacroNode) -> dict[str, list[str]]:
     """Return the parameters without a default of each macro in a file."""
-    macros: dict[str, list[str]] = {}
+    macros = {}
     for node in walk(root):
         if node.tag == "xacro:macro":
             words = node.attributes.get("params", "").split()

@@ -9,9 +9,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import permutations, product
 from math import dist, hypot
-from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.records import Named
 from grader.base.transforms import (
     IDENTITY,
     IDENTITY_ROTATION,
@@ -29,7 +29,7 @@ _MIN_POINTS = 4
 _Pairs = list[tuple[Vector, Vector]]  # a point of the robot, and the same point of the reference
 
 
-class Convention(NamedTuple):
+class Convention(Named):
     """How everything in a robot differs from the reference.
 
     It has the robot without that difference.
@@ -111,7 +111,8 @@ def _fit_rotation(pairs: _Pairs, rotation: Rotation) -> tuple[int, Transform]:
 
 def _describe_motion(T: Transform) -> str:
     """Return a turn and a move in words; empty if there is none."""
-    angle, words = turn_between(T.rotation, IDENTITY_ROTATION), []
+    angle = turn_between(T.rotation, IDENTITY_ROTATION)
+    words = []
     if angle > 1.0:
         about = [axis for axis, turn in zip("xyz", T.rpy, strict=True) if abs(turn) > 0.1]
         sign = "-" if len(about) == 1 and min(T.rpy) < -0.1 and angle < 179.0 else ""
@@ -170,7 +171,7 @@ def _reframe_link(link: Link, T_link_other: Transform) -> Link:
 
 
 def _reframe_joint(joint: Joint, T_parent_other: Transform, T_child_other: Transform) -> Joint:
-    if joint.origin is None or (T_parent_other, T_child_other) == (IDENTITY, IDENTITY):
+    if not joint.origin or (T_parent_other, T_child_other) == (IDENTITY, IDENTITY):
         return joint
     T_parent_child = joint.origin.placed_in(T_parent_other.inverse()) @ T_child_other
     origin = joint.origin._replace(xyz=T_parent_child.translation, rpy=T_parent_child.rpy)

@@ -3,7 +3,6 @@
 They are found in its elements and their values.
 """
 
-import re
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from itertools import chain
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from grader.base.errors import MissingElement
 from grader.base.names import MAX_GUESSES, closest, did_you_mean
+from grader.base.patterns import on_use
 from grader.base.problems import NO_FIXES, Effect, Fix, Fixes, Kind, Problem
 from grader.base.source import Edit, Edits, LazyLocation
 from grader.base.text import cut, enumerated, quoted
@@ -20,13 +20,13 @@ from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.model import Joint, Origin, Robot, UnresolvedPart, UnresolvedParts
 from grader.ros.urdf.numbers import NumberError, number, quaternion, vector
 from grader.ros.urdf.versions import WITH_CAPSULES, UrdfFormat, UrdfVersion, in_words
-from grader.ros.xml.parsing import Element, XmlDocument
+from grader.ros.xml.parsing import Element, Elements, XmlDocument
 from grader.ros.xml.urdf_format import TAGS
 
 if TYPE_CHECKING:
     from grader.ros.urdf.meant import MeantName
 
-_FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")  # %n, %1$n, %hhn
+_FORMAT_DIRECTIVE = on_use(r"%[-+ #0-9.$*'hlLqjzt]*n")  # %n, %1$n, %hhn
 _MAX_PROBLEMS = 1000
 _PRINTED = frozenset(
     {"origin", "box", "cylinder", "capsule", "sphere", "mass"}
@@ -89,7 +89,7 @@ class Problems:
         parts: dict[str, UnresolvedPart] = {}
         for inner in element.iter():
             unresolved = self.unresolved.get(inner)
-            if unresolved is None:
+            if not unresolved:
                 continue
             above = inner
             while (
@@ -118,8 +118,9 @@ class Problems:
 
     def _explains(self, kind: Kind, element: Element, attribute: str | None) -> bool:
         """Return whether what xacro left unresolved explains a problem."""
-        unresolved, of_root = self.unresolved.get(element), self.unresolved.get(self.root)
-        if kind in _OF_MISSING and of_root is not None and of_root.content is not None:
+        unresolved = self.unresolved.get(element)
+        of_root = self.unresolved.get(self.root)
+        if kind in _OF_MISSING and of_root and of_root.content is not None:
             return True
         return unresolved is not None and (
             attribute in unresolved.attributes
@@ -134,7 +135,7 @@ class Problems:
 
     def element(self, joint: Joint) -> Element:
         """Return the element that a joint was read from."""
-        return self.root if joint.location is None else self._elements[joint.location.tag]
+        return self.root if not joint.location else self._elements[joint.location.tag]
 
     def add(
         self,
@@ -185,7 +186,7 @@ class Problems:
     def _fixes_at(self, element: Element, attribute: str | None) -> Iterable[Fix]:
         """Return the fix of an element or an attribute that surely is another one."""
         fix = self._fixes.get((element, attribute))
-        return [fix] if fix is not None else []
+        return [fix] if fix else []
 
     def list_fixes(self) -> Iterable[Fix]:
         """Return the fixes of all words that surely are others, those of one element together."""
@@ -206,13 +207,13 @@ class Problems:
 
         slips = RobotSlips(self.root, self.source, self.unresolved).at_places()
         fixes = {place: slip.fix for place, slip in slips.items() if slip.edits}
-        meant = find_meant_names(self.root, self.robot) if self.robot is not None else ()
+        meant = find_meant_names(self.root, self.robot) if self.robot else ()
         for names in meant:
             edits: dict[Edit, None] = {}
             for name in names:
                 edits |= dict.fromkeys(self._edits_of(name))
             sentences = dict.fromkeys(name.sentence for name in names)
-            fix = Fix(tuple(edits), enumerated([*sentences]))
+            fix = Fix(tuple(edits), enumerated(sentences))
             fixes |= {(name.element, name.attribute): fix for name in names if edits}
         return fixes
 
@@ -223,7 +224,8 @@ class Problems:
         from grader.base.element_edits import escaped, with_attribute
         from grader.ros.xml.tinyxml2 import decode
 
-        index, value = self._indices[name.element], escaped(name.meant)
+        index = self._indices[name.element]
+        value = escaped(name.meant)
         if self.rewrites is not None:
             return next(iter(self.rewrites(index, name.attribute, (name.written, value))), ())
         source, start = self.source.element(index)
@@ -316,7 +318,7 @@ class ElementReader:
             at = self._problems.location(element)._replace(attribute=attribute).resolve()
             key = str(element.tag), attribute or lacks
             open_values = self._problems.unresolved.get(element)
-            if open_values is not None and attribute in open_values.attributes:
+            if open_values and attribute in open_values.attributes:
                 reason = f"xacro cannot expand {attribute} of <{element.tag}>"
             self.unknown.setdefault(key, missing_value(reason, at))
         consequence = self._consequence.format(quoted(self._link))
@@ -386,9 +388,9 @@ class ElementReader:
             return default
 
 
-def first_children(element: Element) -> dict[str, Element]:
+def first_children(element: Element) -> Elements:
     """Return the first child of each name: urdfdom reads no other."""
-    first: dict[str, Element] = {}
+    first: Elements = {}
     for child in element:
         first.setdefault(child.tag, child)
     return first

@@ -6,10 +6,11 @@ They say what a person would see, and which wheel is the cause.
 from collections.abc import Sequence
 from contextlib import suppress
 from math import degrees
-from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.grouping import Strings
 from grader.base.quantities import SLACK, in_degrees, in_millimetres
+from grader.base.records import Named
 from grader.base.source import LazyLocation, place
 from grader.base.text import enumerated, in_quotes
 from grader.base.transforms import X_AXIS, Z_AXIS, Vector, degrees_between
@@ -34,7 +35,7 @@ DRIVES_AHEAD = "with its wheels turning forward, it drives straight ahead"
 _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 
 
-class RobotFault(NamedTuple):
+class RobotFault(Named):
     """What a person would see, what was measured of it, what is allowed, and where to look."""
 
     text: str
@@ -44,7 +45,10 @@ class RobotFault(NamedTuple):
     at: LazyLocation | None = None
 
 
-class DescribedDriving(NamedTuple):
+_Faults = list[RobotFault]
+
+
+class DescribedDriving(Named):
     """How a robot stands on level ground and where its wheels drive it, in one line.
 
     What is wrong with either is beside it. `describe_driving` makes it for inspections.
@@ -57,7 +61,7 @@ class DescribedDriving(NamedTuple):
 
 def describe_driving(robot: Configuration, wheels: Sequence[str]) -> DescribedDriving:
     """Return how a robot stands, and where these links drive it."""
-    course_faults: list[RobotFault] = []
+    course_faults = []
     try:
         standing = StandingRobot(robot, wheels)
         driven = Drivetrain(standing)
@@ -78,7 +82,7 @@ def describe_driving(robot: Configuration, wheels: Sequence[str]) -> DescribedDr
     return DescribedDriving(text, (*_find_leaning(standing), *idle), tuple(course_faults))
 
 
-def _find_leaning(standing: StandingRobot) -> list[RobotFault]:
+def _find_leaning(standing: StandingRobot) -> _Faults:
     """Return that a robot leans, on what is no wheel if there is such a link.
 
     A robot that rests on its wheels and its base may be one without a caster, or one that balances.
@@ -92,7 +96,7 @@ def _find_leaning(standing: StandingRobot) -> list[RobotFault]:
     return [RobotFault(text, tilt, _LEANING, "deg", at)]
 
 
-class Drive(NamedTuple):
+class Drive(Named):
     """How a robot comes to rest on level ground, and where its wheels drive it then.
 
     `plan_drive` makes it for pictures. `text` says in one line what one sees. While the `joints`
@@ -105,7 +109,7 @@ class Drive(NamedTuple):
     text: str
     velocity: Vector = (0.0, 0.0, 0.0)
     turn: float = 0.0
-    joints: tuple[str, ...] = ()
+    joints: Strings = ()
 
 
 def plan_drive(
@@ -123,7 +127,7 @@ def plan_drive(
     a level axis, and that are round about it.
     """
     named = [link for link in wheels if robot.robot.has_link(link)]
-    if named != [*wheels] or not named:
+    if named != list(wheels) or not named:
         rollers = None
         named = named or _find_rolling_links(robot)
     if not named:
@@ -186,13 +190,14 @@ def _find_rolling_links(robot: Configuration) -> list[str]:
 
 def _describe_rest(standing: StandingRobot) -> str:
     """Return in one line how a robot stands."""
-    tilt, stands = standing.rest.tilt, "stands level"
+    tilt = standing.rest.tilt
+    stands = "stands level"
     if tilt > _LEANING:
         stands = f"leans by {in_degrees(tilt)}"
     return f"on level ground, it {stands} on {in_quotes(standing.touching)}"
 
 
-class _Culprit(NamedTuple):
+class _Culprit(Named):
     """A wheel that does not drive as the others: how it differs, and where to look."""
 
     link: str
@@ -209,10 +214,11 @@ class Drivetrain:
     """
 
     def __init__(self, standing: StandingRobot, rollers: Sequence[float] | None = None) -> None:
-        self._standing, self._has_rollers = standing, rollers is not None
+        self._standing = standing
+        self._has_rollers = rollers is not None
         self.wheels = standing.wheels(rollers)
 
-    def find_idle_wheels(self) -> list[RobotFault]:
+    def find_idle_wheels(self) -> _Faults:
         """Return the faults of wheels that drive nothing: they are in the air, or lie flat."""
         standing = self._standing
         if standing.rest.has_fallen:
@@ -233,7 +239,7 @@ class Drivetrain:
                 )
         return faults
 
-    def _find_uneven_wheels(self) -> list[RobotFault]:
+    def _find_uneven_wheels(self) -> _Faults:
         """Return the faults of wheels that are not round about their joints."""
         faults = []
         for wheel in self.wheels:
@@ -261,7 +267,7 @@ class Drivetrain:
                 return first.link, wheel.link
         return None
 
-    def find_faults_ahead(self, forward: Vector, angle: float, turn: float) -> list[RobotFault]:
+    def find_faults_ahead(self, forward: Vector, angle: float, turn: float) -> _Faults:
         """Return why the robot does not drive straight ahead while all wheels turn at one rate.
 
         Args:
@@ -273,13 +279,14 @@ class Drivetrain:
         faults += self._with_culprits(self.find_course_faults(forward, angle, turn), forward)
         return faults
 
-    def find_course_faults(self, forward: Vector, angle: float, turn: float) -> list[RobotFault]:
+    def find_course_faults(self, forward: Vector, angle: float, turn: float) -> _Faults:
         """Return what is wrong with the way of a robot whose wheels all turn at one rate."""
         course = self._standing.drive(self.wheels, [1.0] * len(self.wheels), forward)
         at = axis_place(self.wheels[0].joint)
         faults = []
         if course.speed > _SLOW * course.rim_speed:
-            off, turned = course.off, degrees(course.turn) / course.speed
+            off = course.off
+            turned = degrees(course.turn) / course.speed
             if abs(off) > _BACKWARD:
                 faults.append(RobotFault("it drives backward", off, angle, "deg", at))
             elif not abs(off) <= angle + SLACK:
@@ -295,11 +302,11 @@ class Drivetrain:
             if abs(course.turn) * reach > _SLOW * course.rim_speed:
                 text = f"it turns on the spot to the {_side(course.turn)}"
             faults.append(RobotFault(text, course.speed, None, "m/s", at))
-        return [*faults, *self._find_slips(course.slips)]
+        return faults + self._find_slips(course.slips)
 
-    def _find_slips(self, slips: Sequence[float]) -> list[RobotFault]:
+    def _find_slips(self, slips: Sequence[float]) -> _Faults:
         """Return that wheels slip, at the speeds of their contacts in m/s: one fault for all."""
-        shares: dict[str, float] = {}  # of the speed of the rim, of the wheels that slip
+        shares = {}  # of the speed of the rim, of the wheels that slip
         for wheel, slip in zip(self.wheels, slips, strict=True):
             if slip > (_MAX_SLIP + SLACK) * wheel.radius:
                 shares[wheel.link] = slip / max(wheel.radius, slip)
@@ -311,12 +318,13 @@ class Drivetrain:
         at = axis_place(self.wheels[0].joint)
         return [RobotFault(text, share, 100.0 * _MAX_SLIP, "%", at)]
 
-    def find_turning_faults(self) -> list[RobotFault]:
+    def find_turning_faults(self) -> _Faults:
         """Return what is wrong with a robot's turn while its wheels turn against each other."""
         sides = self._standing.drive(self.wheels, [0.0] * len(self.wheels), X_AXIS).sides
         rates = [-1.0 if side > 0.0 else 1.0 for side in sides]
         course = self._standing.drive(self.wheels, rates, X_AXIS)
-        width, rim_speed = max(sides) - min(sides), course.rim_speed
+        width = max(sides) - min(sides)
+        rim_speed = course.rim_speed
         if not width > _OFF_CENTRE * rim_speed:
             return [RobotFault("its wheels are not on two sides, so it cannot turn")]
         at = axis_place(self.wheels[0].joint)
@@ -336,7 +344,7 @@ class Drivetrain:
             faults.append(RobotFault(text, away, _OFF_CENTRE * width, "m", at))
         return self._with_culprits(faults, X_AXIS)
 
-    def _with_culprits(self, faults: list[RobotFault], forward: Vector) -> list[RobotFault]:
+    def _with_culprits(self, faults: _Faults, forward: Vector) -> _Faults:
         """Return faults of which the first says which wheels are the cause."""
         culprits = [] if self._has_rollers or not faults else self._find_culprits(forward)
         if not culprits:
@@ -356,7 +364,7 @@ class Drivetrain:
             return self._find_other_sizes()
         if max(headings) - min(headings) <= _ANGLE:  # all alike
             return []
-        culprits: list[_Culprit] = []
+        culprits = []
         for wheel, off in zip(self.wheels, headings, strict=True):
             at = axis_place(wheel.joint)
             if abs(off) > 90.0:

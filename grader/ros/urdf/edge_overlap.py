@@ -3,7 +3,7 @@
 Import this module late: loading numpy takes longer than grading, and hardly any robot needs it.
 """
 
-from itertools import combinations
+from itertools import combinations, starmap
 from math import atan2, ceil, pi, sqrt
 from typing import Any
 
@@ -35,7 +35,7 @@ def least_edge_overlap(a: _Edged, b: _Edged, T_a_b: Transform) -> Vector:
     """
     rotation = np.array(T_a_b.rotation).reshape(3, 3)
     straight = np.array([*straight_edges(a), *map(T_a_b.rotate, straight_edges(b))]).T
-    rims: list[tuple[_Array, _Array]] = []  # the plane of each, and the directions of its edges
+    rims = []  # the plane of each, and the directions of its edges
     for shape, frame in ((a, np.eye(3)), (b, rotation)):
         if isinstance(shape, Cylinder):
             rims.append((frame[:, :2], _all_around(shape.radius)))
@@ -44,7 +44,7 @@ def least_edge_overlap(a: _Edged, b: _Edged, T_a_b: Transform) -> Vector:
         lines = [straight]
         for plane, turns in rims:
             lines.append(plane @ np.array((np.cos(turns), np.sin(turns))))
-        products = [_cross_products(p, q) for p, q in combinations(lines, 2)]
+        products = list(starmap(_cross_products, combinations(lines, 2)))
         normals = np.concatenate(products, axis=1)
         lengths = np.sqrt((normals * normals).sum(axis=0))
         lengths[lengths <= _ROUNDING] = np.inf  # parallel lines span no normal

@@ -20,7 +20,7 @@ from grader.ros.urdf.model import (
     SafetyController,
 )
 from grader.ros.urdf.versions import WITH_CHECKED_VALUES
-from grader.ros.xml.parsing import Element
+from grader.ros.xml.parsing import Element, Elements
 from grader.ros.xml.urdf_format import JOINT_TYPES
 
 MOVING_TYPES = ("continuous", "revolute", "prismatic", "planar", "floating")
@@ -34,7 +34,8 @@ _MAX_DEGREES = 720.0  # more is no range in degrees, but a large number that sta
 
 def read_joint(element: Element, problems: Problems) -> Joint:
     """Read one joint; a value that cannot be read is a problem, and None in the joint."""
-    name, kind = element.get("name", ""), element.get("type", "")
+    name = element.get("name", "")
+    kind = element.get("type", "")
     label = quoted(name)
     if element.get("name") is None:
         message = f"this joint has no name; {_REJECTED}"
@@ -87,7 +88,7 @@ def _check_type(element: Element, kind: str, label: str, problems: Problems) -> 
 
 
 def _link_name(
-    element: Element, inside: dict[str, Element], role: str, label: str, problems: Problems
+    element: Element, inside: Elements, role: str, label: str, problems: Problems
 ) -> str:
     """Return the link that a joint names as its parent or child; empty if it names none."""
     end = inside.get(role)
@@ -138,8 +139,10 @@ def _read_limit(
     if problems.format.version >= WITH_CHECKED_VALUES:
         lower, upper, effort, velocity = _checked_limits(limit, kind, reader)
     else:
-        lower, upper = reader.number(limit, "lower"), reader.number(limit, "upper")
-        effort, velocity = reader.number(limit, "effort"), reader.number(limit, "velocity")
+        lower = reader.number(limit, "lower")
+        upper = reader.number(limit, "upper")
+        effort = reader.number(limit, "effort")
+        velocity = reader.number(limit, "velocity")
         for attribute in _CHANGES:
             if attribute in limit.attrib:
                 problems.ignores(limit, attribute, WITH_CHECKED_VALUES)
@@ -172,7 +175,7 @@ def _checked_limits(
     upper = _given(limit, "upper", reader, inf)
     if lower > upper:
         reader.fail(f"lower {lower:g} is above upper {upper:g}", limit, "lower")
-    values: dict[str, float] = {}
+    values = {}
     for attribute in ("effort", "velocity", *_CHANGES):
         values[attribute] = _given(limit, attribute, reader, inf)
         if values[attribute] < 0.0:
@@ -206,7 +209,8 @@ def _read_mimic(element: Element | None, problems: Problems) -> Mimic | None:
     joint = element.get("joint")
     if joint is None:
         reader.fail("<mimic> has no joint", element)
-    multiplier, offset = reader.number(element, "multiplier"), reader.number(element, "offset")
+    multiplier = reader.number(element, "multiplier")
+    offset = reader.number(element, "offset")
     if reader.failed or joint is None:
         return None
     return Mimic(joint, multiplier, offset, problems.location(element))
@@ -272,7 +276,7 @@ def check_references(robot: Robot, problems: Problems) -> None:
 def _check_mimic(robot: Robot, joint: Joint, joints: list[str], problems: Problems) -> None:
     """Report that a joint mimics one that does not exist."""
     mimic = joint.mimic
-    if mimic is not None and not robot.has_joint(mimic.joint):
+    if mimic and not robot.has_joint(mimic.joint):
         message = (
             f"joint {quoted(joint.name)} mimics {quoted(mimic.joint)}, which does not "
             f"exist{problems.did_you_mean(mimic.joint, joints)}"
@@ -324,11 +328,11 @@ def _child_element(joint: Joint, tag: str, problems: Problems) -> Element:
 
 
 def _mimic_loops(robot: Robot) -> list[list[str]]:
-    targets = {joint.name: joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
-    seen: set[str] = set()
+    targets = {joint.name: joint.mimic.joint for joint in robot.joints if joint.mimic}
+    seen = set()
     loops = []
     for start in targets:
-        path: list[str] = []
+        path = []
         name = start
         while name in targets and name not in seen:
             seen.add(name)

@@ -5,12 +5,14 @@ It also says why a pose is undefined.
 
 from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from math import isfinite, nan
 from typing import NamedTuple, overload
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.grouping import Strings
+from grader.base.records import Record
 from grader.base.text import quoted
 from grader.base.transforms import (
     IDENTITY,
@@ -21,7 +23,11 @@ from grader.base.transforms import (
 )
 from grader.ros.urdf.joint_reader import MOVING_TYPES
 from grader.ros.urdf.link_tree import parent_joints, selected_name
-from grader.ros.urdf.model import Joint, Link, Robot
+from grader.ros.urdf.model import Joint, Joints, Link, Robot
+
+_Chain = tuple[Joint, ...]  # joints from one link to another
+
+_POSE = "pose below joint"  # what is missing where a joint leaves it undefined
 
 
 class _Frame(NamedTuple):
@@ -44,10 +50,10 @@ class _Frames:
     Each is computed once, when it is asked for, from the nearest known one above.
     """
 
-    def __init__(
-        self, robot: Robot, parents: Mapping[str, Joint], given: Mapping[str, float]
-    ) -> None:
-        self._robot, self._parents, self._given = robot, parents, given
+    def __init__(self, robot: Robot, parents: Joints, given: Mapping[str, float]) -> None:
+        self._robot = robot
+        self._parents = parents
+        self._given = given
         self._mimicked: dict[str, float] = {}  # the positions of mimic joints
         self._known: dict[str, _Frame] = {}
         # links on or below a loop of joints, with one link's name for the loop
@@ -59,13 +65,14 @@ class _Frames:
         Raises MissingElement where it is not there, or in no tree.
         """
         frame = self._known.get(link)
-        if frame is not None:
+        if frame:
             return frame
         return self._solve(link)
 
     def _solve(self, link: str) -> _Frame:
         self._robot.link(link)
-        parents, known = self._parents, self._known
+        parents = self._parents
+        known = self._known
         joints: dict[str, Joint] = {}
         name = link
         while name not in known and name in parents:
@@ -82,8 +89,9 @@ class _Frames:
             name = parents[name].parent
         frame = known.get(name) or known.setdefault(name, _Frame(name, name, IDENTITY, 0))
         for joint in reversed(joints.values()):
-            motion, pose = _compute_motion(joint, self.position(joint)), None
-            if joint.origin is not None and motion is not None:
+            motion = _compute_motion(joint, self.position(joint))
+            pose = None
+            if joint.origin and motion:
                 pose = joint.origin.placed_in(frame.pose)
                 pose = pose if motion is IDENTITY else pose @ motion
             if pose is not None and isfinite(sum(pose.translation)):
@@ -98,18 +106,18 @@ class _Frames:
 
         Returns NaN if xacro leaves it open.
         """
-        if joint.name in self._given or (joint.mimic is None and "mimic" not in joint.unresolved):
+        if joint.name in self._given or (not joint.mimic and "mimic" not in joint.unresolved):
             return self._given.get(joint.name, 0.0)
         # It is 0 if the chain of mimics ends at a joint that does not exist, or forms a loop.
         # The positions of the joints between are kept: long chains are followed once.
-        followers: dict[str, Joint] = {}
+        followers = {}
         value = 0.0
         while joint.name not in followers:
             given = self._mimicked.get(joint.name, self._given.get(joint.name))
             if given is None and "mimic" in joint.unresolved:
                 value = nan
                 break
-            if given is not None or joint.mimic is None:
+            if given is not None or not joint.mimic:
                 value = given or 0.0
                 break
             followers[joint.name] = joint
@@ -120,7 +128,7 @@ class _Frames:
             self._mimicked.update(dict.fromkeys(followers, 0.0))
             return 0.0
         for name, follower in reversed(followers.items()):
-            assert follower.mimic is not None  # no other joint is a follower
+            assert follower.mimic  # no other joint is a follower
             value = self._mimicked[name] = follower.mimic.multiplier * value + follower.mimic.offset
         return value
 
@@ -134,7 +142,7 @@ def _undefined_pose(joint: Joint, robot: Robot) -> MissingElement:
         if part in joint.unresolved:
             joint.unresolved[part].check()
     at = joint.axis_location and joint.axis_location._replace(attribute="xyz")
-    if joint.origin is None:
+    if not joint.origin:
         reason = "the joint's origin cannot be read"
         if "origin" in joint.unresolved:
             at = joint.unresolved["origin"].location
@@ -148,17 +156,20 @@ def _undefined_pose(joint: Joint, robot: Robot) -> MissingElement:
         for leader in _mimic_leaders(joint, robot):
             if "mimic" in leader.unresolved:
                 leader.unresolved["mimic"].check()
-        reason, at = "the joint's numbers are too large", joint.location
-    message, detail = f"the pose is undefined: {reason}", f" (joint {quoted(joint.name)})"
+        reason = "the joint's numbers are too large"
+        at = joint.location
+    message = f"the pose is undefined: {reason}"
+    detail = f" (joint {quoted(joint.name)})"
+    is_rejected = not joint.origin or joint.axis is None
     return MissingElement(
-        "pose below joint", joint.name, message=message, detail=detail, location=at
+        _POSE, joint.name, message=message, detail=detail, location=at, costs_once=is_rejected
     )
 
 
 def _mimic_leaders(joint: Joint, robot: Robot) -> Iterable[Joint]:
     """Return a joint, the joint that it mimics, the one that this mimics, and so on."""
     chain = {joint.name: joint}
-    while joint.mimic is not None:
+    while joint.mimic:
         name = joint.mimic.joint
         if name in chain or not robot.has_joint(name):
             break
@@ -215,8 +226,8 @@ class _Views(NamedTuple):
     """
 
     robot: Robot
-    parent_joints: Mapping[str, Joint]
-    known_parents: Mapping[str, Joint]
+    parent_joints: Joints
+    known_parents: Joints
 
 
 def _make_views(known: Robot, *, is_guarded: bool) -> _Views:
@@ -228,8 +239,7 @@ def _make_views(known: Robot, *, is_guarded: bool) -> _Views:
     return _Views(*guarded(known, parents), parents)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Configuration:
+class Configuration(Record):
     """A robot with its joints at positions: where each link is, relative to any other.
 
     A position is in radians for a joint that turns, in metres for one that slides; joints without
@@ -276,12 +286,12 @@ class Configuration:
         return self._views.robot
 
     @property
-    def parent_joints(self) -> Mapping[str, Joint]:
+    def parent_joints(self) -> Joints:
         """The parent joints of links as checks read them; a root has none."""
         return self._views.parent_joints
 
     @property
-    def known_parents(self) -> Mapping[str, Joint]:
+    def known_parents(self) -> Joints:
         """The parent joints of links as they are known."""
         return self._views.known_parents
 
@@ -294,14 +304,14 @@ class Configuration:
         return self.robot.joint(name)
 
     @property
-    def roots(self) -> tuple[str, ...]:
+    def roots(self) -> Strings:
         """The links without a parent joint, in file order."""
         return tuple(link.name for link in self.robot.links if link.name not in self.parent_joints)
 
     @property
-    def main_tree(self) -> tuple[str, ...]:
+    def main_tree(self) -> Strings:
         """The links of the largest tree, its root first; empty if every link is in a loop."""
-        trees: dict[str, list[str]] = {root: [root] for root in self.roots}
+        trees = {root: [root] for root in self.roots}
         for name in self.parent_joints:
             with suppress(MissingElement):
                 trees[self.find_root(name)].append(name)
@@ -322,7 +332,7 @@ class Configuration:
         defined pose (an axis of length zero, an origin that cannot be read).
         """
         pose = self._relative.get((link, relative_to))
-        if pose is None:
+        if not pose:
             pose = self._relative[link, relative_to] = self._solve_relative(link, relative_to)
         return pose
 
@@ -375,12 +385,12 @@ class Configuration:
         return direction
 
     @overload
-    def chain(self, link: str) -> tuple[Joint, ...]: ...
+    def chain(self, link: str) -> _Chain: ...
 
     @overload
-    def chain(self, link: str, *, above: str | None) -> tuple[Joint, ...] | None: ...
+    def chain(self, link: str, *, above: str | None) -> _Chain | None: ...
 
-    def chain(self, link: str, *, above: str | None = None) -> tuple[Joint, ...] | None:
+    def chain(self, link: str, *, above: str | None = None) -> _Chain | None:
         """Return the joints that lead to a link, top down, from its root or from `above`.
 
         Returns None if that is not above it.
@@ -405,7 +415,7 @@ class Configuration:
                     joint.unresolved["@type"].check()
         return tuple(reversed(joints))
 
-    def between(self, one: str, other: str) -> tuple[Joint, ...]:
+    def between(self, one: str, other: str) -> _Chain:
         """Return the joints on the path from one link to another.
 
         Raises MissingElement where there is no path.
@@ -413,7 +423,8 @@ class Configuration:
         below = self.chain(other, above=one)
         if below is not None:
             return below
-        up, down = self.chain(one), self.chain(other)
+        up = self.chain(one)
+        down = self.chain(other)
         if self.find_root(one) != self.find_root(other):
             self.pose(other, relative_to=one)
         shared = 0
@@ -437,7 +448,8 @@ class Configuration:
         if joint.type in MOVING_TYPES:
             return joint
         kind = f"the type {quoted(joint.type)}, which does not exist" if joint.type else "no type"
-        message, at = f"the joint that moves {quoted(link)} has {kind}", joint.location
+        message = f"the joint that moves {quoted(link)} has {kind}"
+        at = joint.location
         raise MissingElement(
             "moving joint", link, message=message, location=at and at._replace(attribute="type")
         )
@@ -491,11 +503,7 @@ class Configuration:
         """
         self.axis(joint)  # raises where it has no direction
         chain = self.chain(link, above=relative_to) or ()
-        if (
-            joint in chain
-            and not self.positions
-            and all(above.known.mimic is None for above in chain)
-        ):
+        if joint in chain and not self.positions and all(not above.known.mimic for above in chain):
             T_relative_joint = self.pose(joint.child, relative_to=relative_to)
             turn = (
                 _compute_motion(joint, angle) or IDENTITY
@@ -509,7 +517,6 @@ class Configuration:
         return self._frames.position(joint.known)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
 class _MovedConfiguration(Configuration):
     """A configuration that another one made by moving joints.
 
@@ -526,7 +533,7 @@ class _MovedConfiguration(Configuration):
         return self.shared_views
 
 
-def _last_moving(path: tuple[Joint, ...], link: str, types: Collection[str], message: str) -> Joint:
+def _last_moving(path: _Chain, link: str, types: Collection[str], message: str) -> Joint:
     """Return the last joint with one of the types on the path to a link.
 
     Raises MissingElement where there is none.

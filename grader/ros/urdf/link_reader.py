@@ -17,6 +17,7 @@ from grader.ros.urdf.model import (
     Box,
     Capsule,
     Collision,
+    Colour,
     Cylinder,
     Geometry,
     Inertial,
@@ -29,7 +30,7 @@ from grader.ros.urdf.model import (
 )
 from grader.ros.urdf.numbers import NumberError, rgba
 from grader.ros.urdf.versions import WITH_CAPSULES, WITH_CHECKED_VALUES
-from grader.ros.xml.parsing import Element
+from grader.ros.xml.parsing import Element, Elements
 
 _BLACK = (0.0, 0.0, 0.0, 1.0)
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
@@ -49,7 +50,7 @@ class Materials:
     def __init__(self, problems: Problems) -> None:
         self._problems = problems
         # all definitions of the file, once one is missing
-        self._defined: dict[str, Element] | None = None
+        self._defined: Elements | None = None
         self.known: dict[str, Material] = {}
 
     def define(self, element: Element) -> None:
@@ -63,7 +64,7 @@ class Materials:
                 "this material has no name; no link can use it",
                 element,
             )
-        elif material is None:
+        elif not material:
             if not is_reported:
                 message = f"material {quoted(name)} has no valid colour; ROS 2 makes it black"
                 problems.add(urdf_problems.COLOURLESS_MATERIAL, message, element)
@@ -90,11 +91,11 @@ class Materials:
             fallback = f"material {quoted(name)} stays undefined"
         material, reported = self._read_material(element, name, f"ROS 2 logs an error: {fallback}")
         known = self.known.get(name) if name else material
-        if material is None:
-            if known is None and name and not reported:
+        if not material:
+            if not known and name and not reported:
                 self._note_undefined(name, element, link)
                 known = self._find_elsewhere(name)
-        elif known is None:
+        elif not known:
             known = self.known[name] = material
         elif (material.rgba, material.texture) != (known.rgba, known.texture):
             message = (
@@ -102,7 +103,7 @@ class Materials:
                 "definition"
             )
             self._problems.add(urdf_problems.REDEFINED_MATERIAL, message, element, "name")
-        return known, name, known is None and reported
+        return known, name, not known and reported
 
     def _read_material(
         self, element: Element, name: str, consequence: str
@@ -114,7 +115,8 @@ class Materials:
         inside = first_children(element)
         colour = inside.get("color")
         filename = inside["texture"].get("filename") if "texture" in inside else None
-        channels, reported = None, False
+        channels = None
+        reported = False
         if colour is not None and colour.get("rgba") is not None:
             channels = self._read_colour(colour, name, consequence)
             reported = channels is None
@@ -124,9 +126,7 @@ class Materials:
         location = self._problems.location(element if colour is None else colour)
         return Material(name, channels or _BLACK, filename or "", location, unresolved), reported
 
-    def _read_colour(
-        self, colour: Element, name: str, consequence: str
-    ) -> tuple[float, float, float, float] | None:
+    def _read_colour(self, colour: Element, name: str, consequence: str) -> Colour | None:
         """Return the channels of a colour; None, with a problem, for one that cannot be read."""
         text = colour.get("rgba") or ""
         try:
@@ -148,7 +148,7 @@ class Materials:
         """Return a material that may be defined in a part of the robot that xacro leaves open."""
         root = self._problems.root
         unresolved = self._problems.unresolved.get(root)
-        if unresolved is None or not unresolved.content:
+        if not unresolved or not unresolved.content:
             return None
         return Material(
             name, unresolved={"": UnresolvedPart(unresolved.content, self._problems.location(root))}
@@ -189,11 +189,12 @@ def read_link(element: Element, problems: Problems, materials: Materials) -> Lin
     parts: dict[str, list[Element]] = {"inertial": [], "visual": [], "collision": []}
     for child in element:
         parts.get(child.tag, []).append(child)
-    inertial, is_bad = None, False
+    inertial = None
+    is_bad = False
     if parts["inertial"]:
         first = parts["inertial"][0]
         inertial = _read_inertial(first, problems, name)
-        is_bad = inertial is None and not problems.is_unresolved(first)
+        is_bad = not inertial and not problems.is_unresolved(first)
     elements = parts["visual"] + parts["collision"]
     shapes = _read_shapes(elements, problems, name, materials, is_dropping=is_bad)
     visuals = tuple(shape for shape in shapes if isinstance(shape, Visual))
@@ -210,10 +211,10 @@ def _read_shapes(
     is_dropping: bool,
 ) -> list[Visual | Collision]:
     """Read the shapes of a link; after a bad one, or with `is_dropping`, none is kept."""
-    shapes: list[Visual | Collision] = []
+    shapes = []
     for element in elements:
         shape = _read_shape(element, problems, link, None if is_dropping else materials)
-        if shape is None:
+        if not shape:
             is_dropping = is_dropping or not problems.is_unresolved(element)
         elif not is_dropping:
             shapes.append(shape)
@@ -224,7 +225,7 @@ def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial 
     reader = ElementReader(problems, urdf_problems.BAD_INERTIAL, _INERTIAL_LOST, link)
     inside = first_children(element)
     origin = reader.origin(inside.get("origin"))
-    values: list[float] = []
+    values = []
     for tag, attributes in (("mass", ("value",)), ("inertia", INERTIA)):
         if tag in inside:
             values += [reader.number(inside[tag], attribute) for attribute in attributes]
@@ -267,7 +268,7 @@ def _read_shape(
     errors = reader.unknown.items()
     of_shape = {name: error for (tag, name), error in errors if tag != "origin"}
     is_kept = problems.keeps_dropped and geometry and of_shape.keys() <= {*geometry._fields}
-    if geometry is None or (reader.failed and not is_kept):
+    if not geometry or (reader.failed and not is_kept):
         return None
     if reader.failed:
         from grader.ros.urdf.not_known import with_unknown  # late: few elements are dropped
@@ -277,7 +278,7 @@ def _read_shape(
         origin = with_unknown(origin, of_origin)
     if not is_visual:
         return Collision(geometry, origin, problems.location(element))
-    if material is None or materials is None:
+    if material is None or not materials:
         return Visual(geometry, origin, location=problems.location(element))
     return Visual(geometry, origin, *materials.assign(material, link), problems.location(element))
 

@@ -7,19 +7,22 @@ can name a link by its place in the tree: "@root", "@tip", "@moved:2"; and a joi
 it holds: "@joint:left_wheel".
 """
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
-from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.grouping import group_values
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.text import counted, enumerated, quoted
 from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.diagnostics import Problems
-from grader.ros.urdf.model import Joint, Robot
-from grader.ros.xml.parsing import Element
+from grader.ros.urdf.model import Joint, Joints, Robot
+from grader.ros.xml.parsing import Elements
+
+_JointsByLink = dict[str, Joint]
 
 _MAX_PATHS = 10_000_000  # that ROS 2 follows in a reasonable time
 _MAX_CYCLES = 10
@@ -27,13 +30,13 @@ _MAX_NAMED = 20
 _MAX_ROOTS = 50
 
 JOINT_OF = "@joint:"
-_SELECTOR = re.compile(rf"@(?:root|tip|moved:([1-9]\d{{0,3}}))|{JOINT_OF}(.+)")
+_SELECTOR = on_use(rf"@(?:root|tip|moved:([1-9]\d{{0,3}}))|{JOINT_OF}(.+)")
 _MAX_CHOICES = 5  # links that a name may mean, in a message
 
 _Edges = dict[str, list[Joint]]  # the joints by their parent link
 
 
-def parent_joints(robot: Robot) -> dict[str, Joint]:
+def parent_joints(robot: Robot) -> _JointsByLink:
     """Return the parent joint of each link, by the link's name; a root has none.
 
     Of two joints with one child the last in name order counts, as in ROS 2. ROS 2 shows nothing of
@@ -44,7 +47,7 @@ def parent_joints(robot: Robot) -> dict[str, Joint]:
     complete = _complete_joints(robot)
     if robot.rejected:
         return _most_plausible(complete)
-    parents: dict[str, Joint] = {}
+    parents: _JointsByLink = {}
     for joint in complete:
         if joint.name >= parents.get(joint.child, joint).name:
             parents[joint.child] = joint
@@ -63,8 +66,8 @@ def _complete_joints(robot: Robot) -> list[Joint]:
     ]
 
 
-def _most_plausible(joints: list[Joint]) -> dict[str, Joint]:
-    parents: dict[str, Joint] = {}
+def _most_plausible(joints: list[Joint]) -> _JointsByLink:
+    parents = {}
     above: dict[str, str] = {}  # some link further up; a path is shortened whenever it is followed
 
     def root(link: str) -> str:
@@ -92,16 +95,14 @@ def _implausibility(joint: Joint) -> int:
     return 2 if joint.parent in joint.name else 1
 
 
-def check_tree(robot: Robot, links: dict[str, Element], problems: Problems) -> None:
+def check_tree(robot: Robot, links: Elements, problems: Problems) -> None:
     """Report everything that keeps the links from being one tree.
 
     `links` gives their elements by name.
     """
     parents = parent_joints(robot)
     roots = [link.name for link in robot.links if link.name not in parents]
-    edges: _Edges = {}
-    for joint in _complete_joints(robot):
-        edges.setdefault(joint.parent, []).append(joint)
+    edges = group_values((joint.parent, joint) for joint in _complete_joints(robot))
     reachable = _reachable(roots, edges)
     if len(roots) == 1 and len(parents) == len(robot.joints) and len(reachable) == len(links):
         return
@@ -114,11 +115,8 @@ def check_tree(robot: Robot, links: dict[str, Element], problems: Problems) -> N
         _check_paths(roots, edges, links, problems)
 
 
-def _check_two_parents(edges: _Edges, parents: dict[str, Joint], problems: Problems) -> None:
-    by_child: _Edges = {}
-    for joints in edges.values():
-        for joint in joints:
-            by_child.setdefault(joint.child, []).append(joint)
+def _check_two_parents(edges: _Edges, parents: _JointsByLink, problems: Problems) -> None:
+    by_child = group_values((joint.child, joint) for joints in edges.values() for joint in joints)
     for child, rivals in by_child.items():
         if len({joint.name for joint in rivals}) > 1:
             names = " and ".join(quoted(joint.name) for joint in rivals[:_MAX_NAMED])
@@ -176,7 +174,7 @@ def _cycles(edges: _Edges, links: list[str]) -> list[list[Joint]]:
 def _report_cycle(
     cycle: list[Joint], reachable: set[str], problems: Problems, *, has_root: bool
 ) -> None:
-    shown = [*cycle[:_MAX_NAMED], *cycle[-1:]] if len(cycle) > _MAX_NAMED else cycle
+    shown = (cycle[:_MAX_NAMED] + cycle[-1:]) if len(cycle) > _MAX_NAMED else cycle
     first = cycle[0].parent
     steps = "".join(f"{quoted(joint.parent)} -> " for joint in shown) + quoted(first)
     names = ", ".join(quoted(joint.name) for joint in shown)
@@ -194,7 +192,7 @@ def _report_cycle(
 
 
 def _check_roots(
-    robot: Robot, roots: list[str], edges: _Edges, links: dict[str, Element], problems: Problems
+    robot: Robot, roots: list[str], edges: _Edges, links: Elements, problems: Problems
 ) -> None:
     """Report the links that no joint connects to the robot.
 
@@ -212,9 +210,9 @@ def _check_roots(
     problems.add(urdf_problems.TWO_ROOTS, message, links[others[0]], "name")
 
 
-def _explained_roots(robot: Robot, links: dict[str, Element], problems: Problems) -> set[str]:
+def _explained_roots(robot: Robot, links: Elements, problems: Problems) -> set[str]:
     """Return the links whose missing parent joint another problem explains."""
-    explained: set[str] = set()
+    explained = set()
     for joint in robot.joints:
         if not robot.has_link(joint.parent):
             explained.add(joint.child)
@@ -227,7 +225,7 @@ def _explained_roots(robot: Robot, links: dict[str, Element], problems: Problems
 
 def _describe_roots(main: str, others: list[str]) -> str:
     """Return the message on links that no joint connects to the main root."""
-    named = enumerated([*map(quoted, others)], _MAX_ROOTS)
+    named = enumerated(map(quoted, others), _MAX_ROOTS)
     verb, them = ("is", "it") if len(others) == 1 else ("are", "them")
     all_roots = ", ".join(map(quoted, [main, *others][:_MAX_ROOTS]))
     return (
@@ -236,9 +234,7 @@ def _describe_roots(main: str, others: list[str]) -> str:
     )
 
 
-def _check_paths(
-    roots: list[str], edges: _Edges, links: dict[str, Element], problems: Problems
-) -> None:
+def _check_paths(roots: list[str], edges: _Edges, links: Elements, problems: Problems) -> None:
     paths = dict.fromkeys(links, 0) | dict.fromkeys(roots, 1)
     for name in TopologicalSorter(_predecessors(edges, links)).static_order():
         for joint in edges.get(name, ()):
@@ -251,7 +247,7 @@ def _check_paths(
         problems.add(urdf_problems.TOO_MANY_PATHS, message, links[roots[0]])
 
 
-class _LinkPlace(NamedTuple):
+class _LinkPlace(Named):
     """The place of a link in its tree: the root, and how many moving joints are above it."""
 
     root: str
@@ -264,7 +260,7 @@ def is_selector(text: str) -> bool:
     return _SELECTOR.fullmatch(text) is not None
 
 
-def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
+def selected_name(robot: Robot, parents: Joints, name: str) -> str:
     """Return the name that a selector means, and any other text as it is.
 
     `parents` are the parent joints of links.
@@ -277,7 +273,7 @@ def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     Raises MissingElement where there is no such link, NotDecided where several could be meant.
     """
     match = _SELECTOR.fullmatch(name)
-    if match is None or robot.has_link(name):
+    if not match or robot.has_link(name):
         return name
     robot.check_complete()
     if match[2] is not None:
@@ -298,16 +294,14 @@ def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     return _only_link(robot, selected, name)
 
 
-def _find_tips(
-    places: Mapping[str, _LinkPlace], parents: Mapping[str, Joint], most: int
-) -> set[str]:
+def _find_tips(places: Mapping[str, _LinkPlace], parents: Joints, most: int) -> set[str]:
     """Return the last links of the chains of a tree with the most moving joints."""
     inner = {parents[link].parent for link, place in places.items() if link != place.root}
     return {link for link, place in places.items() if place.depth == most and link not in inner}
 
 
 def _links_moved_by(
-    places: dict[str, _LinkPlace], parents: Mapping[str, Joint], number: int, most: int, name: str
+    places: dict[str, _LinkPlace], parents: Joints, number: int, most: int, name: str
 ) -> set[str]:
     """Return the links that the joint of this number moves.
 
@@ -323,11 +317,9 @@ def _links_moved_by(
     return {link for link in on_chain if places[link].is_moved and places[link].depth == number}
 
 
-def _find_places(robot: Robot, parents: Mapping[str, Joint]) -> dict[str, _LinkPlace]:
+def _find_places(robot: Robot, parents: Joints) -> dict[str, _LinkPlace]:
     """Return the places of the links that are in a tree, each after that of its parent."""
-    below: dict[str, list[str]] = {}
-    for link, joint in parents.items():
-        below.setdefault(joint.parent, []).append(link)
+    below = group_values((joint.parent, link) for link, joint in parents.items())
     places = {
         link.name: _LinkPlace(link.name, 0, is_moved=False)
         for link in robot.links
@@ -337,7 +329,7 @@ def _find_places(robot: Robot, parents: Mapping[str, Joint]) -> dict[str, _LinkP
     while waiting:
         above = waiting.pop()
         for link in below.get(above, ()):
-            is_moving = parents[link].type != "fixed" and parents[link].mimic is None
+            is_moving = parents[link].type != "fixed" and not parents[link].mimic
             places[link] = _LinkPlace(
                 places[above].root, places[above].depth + is_moving, is_moving
             )
@@ -354,7 +346,7 @@ def _main_root(places: Mapping[str, _LinkPlace], name: str) -> str:
         message = "no link is the root of the robot"
     else:
         message = "several links are roots of trees of the same size"
-    detail = f": {enumerated([*map(quoted, largest)], _MAX_CHOICES)}" if largest else ""
+    detail = f": {enumerated(map(quoted, largest), _MAX_CHOICES)}" if largest else ""
     raise MissingElement("link", name, message=f"there is no {name}: {message}", detail=detail)
 
 

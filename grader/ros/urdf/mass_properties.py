@@ -10,8 +10,8 @@ section 2.13).
 from collections.abc import Iterable
 from itertools import combinations, combinations_with_replacement
 from math import hypot, isfinite, nan
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.transforms import Rotation, Transform, Vector, add_up, dot, minus, weighted_mean
 from grader.ros.urdf.model import (
     INERTIA,
@@ -33,7 +33,7 @@ Tensor = tuple[
 ]  # ixx, ixy, ixz, iyy, iyz, izz as in a URDF, kg m^2
 
 
-class MassProperties(NamedTuple):
+class MassProperties(Named):
     """The mass of a body in kg, its centre of mass in m, and its inertia about that.
 
     The inertia is along the axes of one frame.
@@ -44,7 +44,7 @@ class MassProperties(NamedTuple):
     inertia: Tensor
 
 
-class Solid(NamedTuple):
+class Solid(Named):
     """Shapes of one density that are fixed to each other, each with its pose in one frame."""
 
     shapes: tuple[tuple[Shape, Transform], ...]
@@ -52,7 +52,7 @@ class Solid(NamedTuple):
     @classmethod
     def of(cls, placed: Iterable[tuple[Geometry, Origin]]) -> "Solid":
         """Return the solid of shapes with their origins. Raises UnknownShape for a mesh."""
-        shapes: list[tuple[Shape, Transform]] = []
+        shapes = []
         for geometry, origin in placed:
             if isinstance(geometry, Mesh):
                 raise UnknownShape(geometry)
@@ -96,7 +96,7 @@ class Solid(NamedTuple):
         return any(penetration(*one, *other, allowed) > 0.0 for one, other in pairs)
 
 
-class _SolidDifference(NamedTuple):
+class _SolidDifference(Named):
     """How an <inertial> differs from a uniform solid of its mass.
 
     It has the inertia about any axis, in percent of the largest principal moment of the solid, and

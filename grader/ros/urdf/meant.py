@@ -1,11 +1,12 @@
 """Names for which ROS 2 rejects a file and that surely stand for others: of links and joints."""
 
-import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from grader.base.grouping import group_values
 from grader.base.names import near
+from grader.base.patterns import on_use
 from grader.base.text import quoted
 from grader.ros.urdf.model import Robot
 from grader.ros.xml.parsing import Element
@@ -14,9 +15,7 @@ from grader.ros.xml.urdf_format import JOINT_TYPES
 _MAX_NAMES = 20  # that no link has
 _MAX_PLACES = 100  # in which such names are
 _MAX_DOUBLED = 5  # joints that move one link
-_ROOT = re.compile(
-    r"(?i)base|world|map|odom|root"
-)  # how the first link of a robot is usually called
+_ROOT = on_use(r"(?i)base|world|map|odom|root")  # how the first link of a robot is usually called
 
 
 class MeantName(NamedTuple):
@@ -38,6 +37,9 @@ class MeantName(NamedTuple):
         return f"{self.what} {quoted(self.written)} is read as {quoted(self.meant)}"
 
 
+_MeantNames = Iterator[MeantName]
+
+
 def find_meant_names(root: Element, robot: Robot) -> list[list[MeantName]]:
     """Return the names that surely are others, each list with those that one slip changes.
 
@@ -45,14 +47,12 @@ def find_meant_names(root: Element, robot: Robot) -> list[list[MeantName]]:
     """
     names = [*_misspelt_references(root, robot), *_repeated_names(root)]
     names += _pasted_children(root, robot)
-    by_words: dict[tuple[str, str], list[MeantName]] = {}
-    for name in names:
-        by_words.setdefault((name.sentence, name.attribute), []).append(name)
-    exchanged = [*_exchanged_ends(root, robot)]
+    by_words = group_values(((name.sentence, name.attribute), name) for name in names)
+    exchanged = list(_exchanged_ends(root, robot))
     return [*by_words.values(), *([exchanged] if exchanged else [])]
 
 
-def _misspelt_references(root: Element, robot: Robot) -> Iterator[MeantName]:
+def _misspelt_references(root: Element, robot: Robot) -> _MeantNames:
     """Yield links that joints name and that do not exist, and joint types.
 
     Each is near one that can be meant.
@@ -76,7 +76,7 @@ def _misspelt_references(root: Element, robot: Robot) -> Iterator[MeantName]:
         yield from _misspelt_ends(joint, misspelt, links, children)
 
 
-def _misspelt_type(joint: Element) -> Iterator[MeantName]:
+def _misspelt_type(joint: Element) -> _MeantNames:
     """Yield the type of a joint if it is near one that there is."""
     written = joint.get("type")
     if written not in JOINT_TYPES:
@@ -110,7 +110,7 @@ def _misspelt_definitions(
 
 def _misspelt_ends(
     joint: Element, misspelt: Collection[str], links: Sequence[str], children: set[str]
-) -> Iterator[MeantName]:
+) -> _MeantNames:
     """Yield the misspelt parent and child of a joint.
 
     `children` grows by what is meant, which no other joint can.
@@ -130,18 +130,19 @@ def _misspelt_ends(
             yield MeantName(end, "link", meant, "the link")
 
 
-def _exchanged_ends(root: Element, robot: Robot) -> Iterator[MeantName]:
+def _exchanged_ends(root: Element, robot: Robot) -> _MeantNames:
     """Yield the parent and child of the one joint that are exchanged.
 
     Because of it one link has two parents.
     """
     root_with = _roots_with_exchanged_ends(robot)
     usual = [index for index, name in root_with.items() if _ROOT.match(name)]
-    only = usual if len(root_with) > 1 else [*root_with]
-    elements = [*root.iterchildren("joint")]
+    only = usual if len(root_with) > 1 else list(root_with)
+    elements = list(root.iterchildren("joint"))
     if len(only) != 1 or len(elements) != len(robot.joints):
         return
-    joint, element = robot.joints[only[0]], elements[only[0]]
+    joint = robot.joints[only[0]]
+    element = elements[only[0]]
     for role, link in (("parent", joint.child), ("child", joint.parent)):
         end = element.find(role)
         if end is not None and end.get("link"):
@@ -157,7 +158,7 @@ def _roots_with_exchanged_ends(robot: Robot) -> dict[int, str]:
     doubled = [child for child, count in counts.items() if count > 1]
     if len(doubled) != 1 or counts[doubled[0]] > _MAX_DOUBLED:
         return {}
-    root_with: dict[int, str] = {}
+    root_with = {}
     for index, joint in enumerate(robot.joints):
         if joint.child == doubled[0] and joint.parent not in counts:
             others = {*counts, joint.parent}
@@ -167,7 +168,7 @@ def _roots_with_exchanged_ends(robot: Robot) -> dict[int, str]:
     return root_with
 
 
-def _pasted_children(root: Element, robot: Robot) -> Iterator[MeantName]:
+def _pasted_children(root: Element, robot: Robot) -> _MeantNames:
     """Yield the child that a second joint has by mistake.
 
     The one link that no joint names should be there.
@@ -187,7 +188,7 @@ def _pasted_children(root: Element, robot: Robot) -> Iterator[MeantName]:
         yield MeantName(end, "link", lonely[0], "the child")
 
 
-def _repeated_names(root: Element) -> Iterator[MeantName]:
+def _repeated_names(root: Element) -> _MeantNames:
     """Yield a name that is given twice, where one other name is used and not given.
 
     The later one should have it.
@@ -199,10 +200,8 @@ def _repeated_names(root: Element) -> Iterator[MeantName]:
     yield from _find_repeated(root, "joint", used_joints)
 
 
-def _find_repeated(root: Element, tag: str, used: Iterable[str | None]) -> Iterator[MeantName]:
-    by_name: dict[str | None, list[Element]] = {}
-    for element in root.iterchildren(tag):
-        by_name.setdefault(element.get("name"), []).append(element)
+def _find_repeated(root: Element, tag: str, used: Iterable[str | None]) -> _MeantNames:
+    by_name = group_values((element.get("name"), element) for element in root.iterchildren(tag))
     repeated = [named for name, named in by_name.items() if name is not None and len(named) > 1]
     missing = [name for name in used if name and name not in by_name]
     if len(repeated) == len(missing) == 1 and len(repeated[0]) == 2:
@@ -212,7 +211,7 @@ def _find_repeated(root: Element, tag: str, used: Iterable[str | None]) -> Itera
             yield from _copied_joint(joints, by_name)
 
 
-def _copied_joint(joints: Sequence[Element], known: Collection[str | None]) -> Iterator[MeantName]:
+def _copied_joint(joints: Sequence[Element], known: Collection[str | None]) -> _MeantNames:
     """Yield the joint that was copied with its name, which has the child of the first one in it."""
     children = []
     for joint in joints:

@@ -7,17 +7,21 @@ file gives but that cannot be read; a value that the file does not give has ROS 
 """
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import islice
 from math import pi
 from operator import attrgetter
 from typing import NamedTuple, NoReturn, TypeVar
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.grouping import Strings
 from grader.base.names import closest, similar_there
+from grader.base.records import Named, Record
 from grader.base.source import LazyLocation
 from grader.base.text import quoted
 from grader.base.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
+
+_Place = LazyLocation | None
 
 INERTIA = (
     "ixx",
@@ -33,10 +37,10 @@ _MAX_COMPARED = 50  # links whose names are compared
 
 _Value = TypeVar("_Value")
 _PLACES = ("location", "axis_location", "unresolved")  # fields that are no values
-_COMPARED: dict[type, tuple[str, ...]] = {}  # the other fields
+_COMPARED: dict[type, Strings] = {}  # the other fields
 
 
-def compared_fields(kind: type) -> tuple[str, ...]:
+def compared_fields(kind: type) -> Strings:
     """Return the fields of a kind of element that are its values: all but places in a file."""
     return _COMPARED[kind]
 
@@ -47,7 +51,7 @@ def _compared_by_values(kind: type[_Value]) -> type[_Value]:
     Where they are in a file does not count. Dataclasses do the same, but to make one takes six
     times as long as a named tuple, which all commands wait for.
     """
-    every: tuple[str, ...] = getattr(kind, "_fields")  # noqa: B009  of a named tuple
+    every: Strings = getattr(kind, "_fields")  # noqa: B009  of a named tuple
     _COMPARED[kind] = fields = tuple(name for name in every if name not in _PLACES)
     values = attrgetter(*fields)
 
@@ -78,7 +82,7 @@ class Origin(NamedTuple):
 
     xyz: Vector = (0.0, 0.0, 0.0)
     rpy: Vector = (0.0, 0.0, 0.0)
-    location: LazyLocation | None = None
+    location: _Place = None
 
     def placed_in(self, T_frame_parent: Transform = IDENTITY) -> Transform:
         """Return T_frame_child, of the frame that it places in its parent.
@@ -94,11 +98,11 @@ _SAME_FRAME = Origin()
 
 
 @_compared_by_values
-class Box(NamedTuple):
+class Box(Named):
     """A box about its centre; `size` is the full edge lengths along x, y, z in metres."""
 
     size: Vector
-    location: LazyLocation | None = None
+    location: _Place = None
 
     @property
     def volume(self) -> float:
@@ -113,12 +117,12 @@ class Box(NamedTuple):
 
 
 @_compared_by_values
-class Cylinder(NamedTuple):
+class Cylinder(Named):
     """A cylinder about its centre, its axis along z; lengths in metres."""
 
     radius: float
     length: float
-    location: LazyLocation | None = None
+    location: _Place = None
 
     @property
     def volume(self) -> float:
@@ -132,7 +136,7 @@ class Cylinder(NamedTuple):
 
 
 @_compared_by_values
-class Capsule(NamedTuple):
+class Capsule(Named):
     """A cylinder about its centre with a half sphere at each end, its axis along z.
 
     The length is that of the cylinder alone, as in SDF; lengths in metres.
@@ -140,7 +144,7 @@ class Capsule(NamedTuple):
 
     radius: float
     length: float
-    location: LazyLocation | None = None
+    location: _Place = None
 
     @property
     def volume(self) -> float:
@@ -155,11 +159,11 @@ class Capsule(NamedTuple):
 
 
 @_compared_by_values
-class Sphere(NamedTuple):
+class Sphere(Named):
     """A sphere about its centre; its radius in metres."""
 
     radius: float
-    location: LazyLocation | None = None
+    location: _Place = None
 
     @property
     def volume(self) -> float:
@@ -173,7 +177,7 @@ class Sphere(NamedTuple):
 
 
 @_compared_by_values
-class Mesh(NamedTuple):
+class Mesh(Named):
     """A mesh file, with a factor of its size along each axis.
 
     Only pictures open it, so to checks its extent is unknown.
@@ -181,7 +185,7 @@ class Mesh(NamedTuple):
 
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)
-    location: LazyLocation | None = None
+    location: _Place = None
 
     @property
     def is_empty(self) -> bool:
@@ -192,7 +196,7 @@ class Mesh(NamedTuple):
 Geometry = Box | Cylinder | Capsule | Sphere | Mesh
 
 
-class UnresolvedPart(NamedTuple):
+class UnresolvedPart(Named):
     """A part of a link, joint or material that xacro leaves open.
 
     It has the reason, which is empty where xacro refuses it.
@@ -209,21 +213,22 @@ class UnresolvedPart(NamedTuple):
 
 # The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in
 # a <visual>, "" for more children than are known. Empty for a plain URDF.
+Colour = tuple[float, float, float, float]  # red, green, blue and alpha, from 0 to 1
 UnresolvedParts = Mapping[str, UnresolvedPart]
 _NOTHING_OPEN: UnresolvedParts = {}
 
 
 @_compared_by_values
-class Material(NamedTuple):
+class Material(Named):
     """A colour with channels in 0..1, red, green, blue, alpha.
 
     `texture` is a file name, never opened.
     """
 
     name: str
-    rgba: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
+    rgba: Colour = (0.0, 0.0, 0.0, 1.0)
     texture: str = ""
-    location: LazyLocation | None = None
+    location: _Place = None
     unresolved: UnresolvedParts = _NOTHING_OPEN
 
 
@@ -239,7 +244,7 @@ class Visual(NamedTuple):
     material: Material | None = None
     material_name: str = ""
     has_unreadable_colour: bool = False
-    location: LazyLocation | None = None
+    location: _Place = None
 
 
 @_compared_by_values
@@ -248,17 +253,17 @@ class Collision(NamedTuple):
 
     geometry: Geometry
     origin: Origin = _SAME_FRAME
-    location: LazyLocation | None = None
+    location: _Place = None
 
 
 @_compared_by_values
-class Inertial(NamedTuple):
+class Inertial(Named):
     """Mass in kilograms, centre of mass, and ixx, ixy, ixz, iyy, iyz, izz in kg m^2."""
 
     mass: float
     inertia: tuple[float, float, float, float, float, float]
     origin: Origin = _SAME_FRAME
-    location: LazyLocation | None = None
+    location: _Place = None
 
 
 @_compared_by_values
@@ -274,7 +279,7 @@ class Link(NamedTuple):
     visuals: tuple[Visual, ...] = ()
     collisions: tuple[Collision, ...] = ()
     inertial: Inertial | None = None
-    location: LazyLocation | None = None
+    location: _Place = None
     unresolved: UnresolvedParts = _NOTHING_OPEN
 
     @property
@@ -284,7 +289,7 @@ class Link(NamedTuple):
 
 
 @_compared_by_values
-class Limit(NamedTuple):
+class Limit(Named):
     """A joint's range (rad or m), maximum effort (N m or N) and maximum velocity (rad/s or m/s).
 
     Here and in the other elements of a joint, a number that cannot be read is NaN.
@@ -294,17 +299,17 @@ class Limit(NamedTuple):
     upper: float
     effort: float
     velocity: float
-    location: LazyLocation | None = None
+    location: _Place = None
 
 
 @_compared_by_values
-class Mimic(NamedTuple):
+class Mimic(Named):
     """This joint's position is `multiplier` times the named joint's, plus `offset`."""
 
     joint: str
     multiplier: float = 1.0
     offset: float = 0.0
-    location: LazyLocation | None = None
+    location: _Place = None
 
 
 @_compared_by_values
@@ -313,11 +318,11 @@ class Dynamics(NamedTuple):
 
     damping: float = 0.0
     friction: float = 0.0
-    location: LazyLocation | None = None
+    location: _Place = None
 
 
 @_compared_by_values
-class SafetyController(NamedTuple):
+class SafetyController(Named):
     """The range (rad or m) in which a safety controller keeps a joint.
 
     It also has its gains for position and velocity.
@@ -327,11 +332,11 @@ class SafetyController(NamedTuple):
     soft_lower_limit: float = 0.0
     soft_upper_limit: float = 0.0
     k_position: float = 0.0
-    location: LazyLocation | None = None
+    location: _Place = None
 
 
 @_compared_by_values
-class Calibration(NamedTuple):
+class Calibration(Named):
     """The positions (rad or m) at which a joint's reference switch has a rising or falling edge.
 
     A position is None if it is not given.
@@ -339,7 +344,7 @@ class Calibration(NamedTuple):
 
     rising: float | None = None
     falling: float | None = None
-    location: LazyLocation | None = None
+    location: _Place = None
 
 
 @_compared_by_values
@@ -369,8 +374,8 @@ class Joint(NamedTuple):
     dynamics: Dynamics | None = None
     safety_controller: SafetyController | None = None
     calibration: Calibration | None = None
-    location: LazyLocation | None = None
-    axis_location: LazyLocation | None = None
+    location: _Place = None
+    axis_location: _Place = None
     unresolved: UnresolvedParts = _NOTHING_OPEN
 
     @property
@@ -384,8 +389,10 @@ class Joint(NamedTuple):
         return self
 
 
-@dataclass(frozen=True, slots=True)
-class Robot:
+Joints = Mapping[str, Joint]  # by their names
+
+
+class Robot(Record):
     """The links and joints of a URDF, as plain values that know nothing of poses.
 
     The reader makes it; `Configuration` puts its joints at positions and computes poses. Checks
@@ -406,20 +413,29 @@ class Robot:
     links: tuple[Link, ...] = ()  # in file order; of two with the same name the first is looked up
     joints: tuple[Joint, ...] = ()  # likewise
     materials: tuple[Material, ...] = ()  # those under <robot> and those that visuals define
-    rejected: bool = field(
-        default=False, compare=False
-    )  # ROS 2 rejects the file: this is what could be read of it
-    incomplete: str = field(
-        default="", compare=False
-    )  # why there may be more links and joints; empty if there are not
-    _links: dict[str, Link] = field(init=False, compare=False, repr=False, hash=False)
-    _joints: dict[str, Joint] = field(init=False, compare=False, repr=False, hash=False)
+    rejected: bool = False  # ROS 2 rejects the file: this is what could be read of it
+    incomplete: str = ""  # why there may be more links and joints; empty if there are not
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "_links", {link.known.name: link for link in reversed(self.links)})
-        object.__setattr__(
-            self, "_joints", {joint.known.name: joint for joint in reversed(self.joints)}
-        )
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Robot) and self._values == other._values
+
+    def __hash__(self) -> int:
+        return hash(self._values)
+
+    def __repr__(self) -> str:
+        return f"Robot{self._values}"
+
+    @property
+    def _values(self) -> tuple[object, ...]:
+        return self.name, self.links, self.joints, self.materials
+
+    @cached_property
+    def _links(self) -> Mapping[str, Link]:
+        return {link.known.name: link for link in reversed(self.links)}
+
+    @cached_property
+    def _joints(self) -> Joints:
+        return {joint.known.name: joint for joint in reversed(self.joints)}
 
     def link(self, name: str) -> Link:
         """Return the link of this name; raises MissingElement, which lists the existing names."""

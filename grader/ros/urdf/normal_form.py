@@ -10,6 +10,7 @@ for a type of joint.
 """
 
 from collections.abc import Collection, Iterable, Iterator
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from grader.base.transforms import AXES, unit
@@ -51,7 +52,7 @@ def normal_form(
     refers to. Directions are rounded to `decimals`: with 2, half a turn that is written 3.14 is the
     same in both directions.
     """
-    mimicked = {joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
+    mimicked = {joint.mimic.joint for joint in robot.joints if joint.mimic}
     connected = {name for joint in robot.joints for name in (joint.parent, joint.child)}
     forms = _Forms(decimals)
     links = (forms.of_link(link, {*kept, *connected}) for link in robot.links)
@@ -68,7 +69,7 @@ def robot_hash(reading: Reading) -> str:
     The problems count because ROS 2 ignores what is wrong: without them, different mistakes could
     give the same robot.
     """
-    if reading.robot is None or not reading.robot.links:
+    if not reading.robot or not reading.robot.links:
         return ""
     problems = sorted((problem.code, problem.message) for problem in reading.problems)
     return _hash((problems, normal_form(reading.robot), _extensions(reading.elements)))
@@ -83,7 +84,7 @@ def written_form(root: Element | None, *, is_handed_out: bool = False) -> str:
     children = list(root) if root is not None else []
     model = [child for child in children if child.tag in _MODEL]
     if model and (is_handed_out or len(model) < len(children)):
-        return _hash([*map(_content, model)])
+        return _hash(list(map(_content, model)))
     return ""
 
 
@@ -135,7 +136,8 @@ class _Forms(NamedTuple):
         return link.name if link.name in kept else "", *shapes, _rounded(mass)
 
     def of_joint(self, joint: Joint, kept: Collection[str]) -> object:
-        kind, limit = joint.type, joint.limit if joint.type not in _UNLIMITED else None
+        kind = joint.type
+        limit = joint.limit if joint.type not in _UNLIMITED else None
         moving = (
             joint.mimic,
             joint.dynamics or Dynamics(),
@@ -147,10 +149,10 @@ class _Forms(NamedTuple):
             joint.child,
             joint.name if joint.name in kept else "",
             kind,
-            self._normalise_pose(joint.origin) if joint.origin is not None else None,
+            self._normalise_pose(joint.origin) if joint.origin else None,
             self._normalise_axis(joint),
-            _rounded((limit.lower, limit.upper)) if limit is not None and kind in _LIMITED else (),
-            _rounded((limit.effort, limit.velocity)) if limit is not None else (),
+            _rounded((limit.lower, limit.upper)) if limit and kind in _LIMITED else (),
+            _rounded((limit.effort, limit.velocity)) if limit else (),
             _rounded(moving) if kind != "fixed" else (),
         )
 
@@ -160,7 +162,7 @@ class _Forms(NamedTuple):
         for shape in shapes:
             if not shape.geometry.is_empty:
                 material = shape.material if isinstance(shape, Visual) else None
-                colour = (*material.rgba, material.texture) if material is not None else ()
+                colour = (*material.rgba, material.texture) if material else ()
                 position, rotation = self._normalise_pose(shape.origin, shape.geometry)
                 yield position, _rounded(shape.geometry), rotation, colour
 
@@ -207,5 +209,10 @@ def _rounded(value: Any) -> Any:
     if isinstance(value, tuple):
         return tuple(map(_rounded, value))
     if isinstance(value, float):
-        return float(f"{round(value, _DECIMALS):.{_DIGITS}g}") + 0.0
+        return _round_number(value)
     return value
+
+
+@lru_cache(maxsize=1024)  # the robots of a class have many numbers in common
+def _round_number(number: float) -> float:
+    return float(f"{round(number, _DECIMALS):.{_DIGITS}g}") + 0.0

@@ -12,13 +12,14 @@ from functools import lru_cache, wraps
 from math import isfinite, isinf, pi
 from typing import TypeVar
 
+from grader.base.patterns import on_use
 from grader.base.text import counted, quoted
-from grader.base.transforms import Vector
+from grader.base.transforms import Quaternion, Vector
 
-_NUMBER = re.compile(r"[ \t\n\v\f\r]*[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_NUMBER = on_use(r"[ \t\n\v\f\r]*[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _MAX_CACHED_LENGTH = 64  # characters: longer texts would make the cache large
 _COMMA = r"[+-]?[0-9]+,[0-9]+"  # 0,15 for 0.15
-_ARITHMETIC = re.compile(r"(?:[0-9.+\-*/()]|pi)+")
+_ARITHMETIC = on_use(r"(?:[0-9.+\-*/()]|pi)+")
 _MAX_WORK = 1_000  # parts
 _VERSION = r"[ \t\n\v\f\r]*([+-]?[0-9]+)"
 _MAX_LONG = 2**63 - 1
@@ -42,7 +43,7 @@ def _cached_reader(read: Callable[[str], _Value]) -> Callable[[str], _Value]:
 @_cached_reader
 def number(text: str) -> float:
     """Return the value of one number as urdfdom's strToDouble does; raises NumberError."""
-    if _NUMBER.fullmatch(text) is None:
+    if not _NUMBER.fullmatch(text):
         raise NumberError(_why_no_number(text))
     value = float(text)
     if isinf(value):
@@ -77,7 +78,7 @@ def vector(text: str) -> Vector:
 
 
 @_cached_reader
-def quaternion(text: str) -> tuple[float, float, float, float]:
+def quaternion(text: str) -> Quaternion:
     """Return the four numbers x, y, z, w as urdfdom 6 reads them; raises NumberError."""
     values = numbers(text)
     if len(values) != 4:

@@ -4,13 +4,12 @@ A plug-in cannot read such a value by accident: each field of a view that can be
 which raises NotDecided, or MissingElement where xacro refuses the text of the field.
 """
 
-from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import field, replace
 from typing import Any, Self, TypeVar
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import quoted
-from grader.ros.urdf.model import Joint, Link, Material, Robot, Visual
+from grader.ros.urdf.model import Colour, Joint, Joints, Link, Material, Robot, Visual
 
 _KEYS = {
     "name": "@name",
@@ -30,7 +29,7 @@ _OF_PLACE = (
 _Value = TypeVar("_Value")
 
 
-def guarded(robot: Robot, parents: Mapping[str, Joint]) -> tuple[Robot, dict[str, Joint]]:
+def guarded(robot: Robot, parents: Joints) -> tuple[Robot, dict[str, Joint]]:
     """Return views of a robot and of its parent joints, in which reading what is open raises.
 
     So does reading the links and joints as a whole, and asking for one that is not there, where it
@@ -43,7 +42,7 @@ def guarded(robot: Robot, parents: Mapping[str, Joint]) -> tuple[Robot, dict[str
         joints=joints,
         materials=tuple(map(_view_of_material, robot.materials)),
     )
-    view_by_child: dict[str, Joint] = {}
+    view_by_child = {}
     for joint in joints:
         child = joint.known.child
         if parents.get(child) is joint.known:
@@ -60,7 +59,7 @@ def _view_of_link(link: Link) -> Link:
 
 def _view_of_visual(visual: Visual) -> Visual:
     material = visual.material
-    return visual if material is None else visual._replace(material=_view_of_material(material))
+    return visual if not material else visual._replace(material=_view_of_material(material))
 
 
 def _view_of_material(material: Material) -> Material:
@@ -78,17 +77,19 @@ def _value_if_known(part: Link | Joint, field: str, value: _Value) -> _Value:
     unresolved = part.unresolved.get(key)
     # What the file does not give may be among unknown children. A visual that is known counts, even
     # if there are more.
-    if unresolved is None and (field == "collisions" or not value):
+    if not unresolved and (field == "collisions" or not value):
         unresolved = part.unresolved.get("")
-    if unresolved is None:
+    if not unresolved:
         return value
     unresolved.check()
     if field in _OF_PLACE:
         return value
     if isinstance(part, Joint):
-        kind, owner = "joint", part.child
+        kind = "joint"
+        owner = part.child
     else:
-        kind, owner = "link", part.name
+        kind = "link"
+        owner = part.name
     message = f"xacro cannot expand the {key} of {kind} {quoted(part.name)}"
     raise MissingElement(key, owner, message=message, location=unresolved.location)
 
@@ -125,7 +126,7 @@ class _MaterialView(Material):
     unresolved = _closed_field("unresolved")
 
     @property
-    def rgba(self) -> tuple[float, float, float, float]:
+    def rgba(self) -> Colour:
         raise self._undecided()
 
     @property
@@ -191,47 +192,38 @@ class _JointView(Joint):
     calibration = _field_if_known("calibration")
 
 
+_ALL_ELEMENTS = property(Robot.check_complete)
+
+
 class _IncompleteRobot(Robot):
     """A robot that may have more links and joints than are known.
 
     Those that are known can be read one by one.
     """
 
-    __slots__ = ("_known",)
-    _known: Robot
+    known: Robot = field(init=False)
 
     def __init__(self, known: Robot) -> None:
-        object.__setattr__(self, "_known", known)  # as frozen dataclasses do
-
-    @property
-    def known(self) -> Robot:
-        return self._known
+        vars(self)["known"] = known
 
     name = _closed_field("name")
+    links = joints = _ALL_ELEMENTS
     materials = _closed_field("materials")
     rejected = _closed_field("rejected")
     incomplete = _closed_field("incomplete")
 
-    @property
-    def links(self) -> tuple[Link, ...]:
-        raise NotDecided(self.incomplete)
-
-    @property
-    def joints(self) -> tuple[Joint, ...]:
-        raise NotDecided(self.incomplete)
-
     def link(self, name: str) -> Link:
-        return self._known.link(name)
+        return self.known.link(name)
 
     def joint(self, name: str) -> Joint:
-        return self._known.joint(name)
+        return self.known.joint(name)
 
     def has_link(self, name: str) -> bool:
-        if not self._known.has_link(name):
+        if not self.known.has_link(name):
             self.check_complete()
         return True
 
     def has_joint(self, name: str) -> bool:
-        if not self._known.has_joint(name):
+        if not self.known.has_joint(name):
             self.check_complete()
         return True

@@ -40,12 +40,10 @@ def penetration(
     scale = 1.0
     if reach > _MAX_LENGTH:
         scale = min(reach / _MAX_LENGTH, 1e308)
-        a, b, T_w_a, T_w_b = (
-            shrunk(a, scale),
-            shrunk(b, scale),
-            _scale_pose(T_w_a, scale),
-            _scale_pose(T_w_b, scale),
-        )
+        a = shrunk(a, scale)
+        b = shrunk(b, scale)
+        T_w_a = _scale_pose(T_w_a, scale)
+        T_w_b = _scale_pose(T_w_b, scale)
     T_a_b = T_w_a.inverse() @ T_w_b
     depth = _overlap(a, b, T_a_b, least_overlap(a, b, T_a_b, limit / scale)) * scale
     return depth if depth > limit else 0.0
@@ -62,11 +60,13 @@ def least_overlap(a: Shape, b: Shape, T_a_b: Transform, limit: float = _ROUNDING
     def overlap(direction: Vector) -> float:
         return _overlap(a, b, T_a_b, direction)
 
-    best, least = (0.0, 0.0, 1.0), inf
+    best = (0.0, 0.0, 1.0)
+    least = inf
     for direction in _likely_directions(a, b, T_a_b):
         amount = overlap(direction)
         if amount < least:
-            best, least = direction, amount
+            best = direction
+            least = amount
         if least <= limit:
             return best
     if not isinstance(a, Sphere) and not isinstance(b, Sphere) and _rims_matter(a, b, T_a_b):
@@ -165,7 +165,8 @@ def _nearest_of_axis(capsule: Capsule, T_other_capsule: Transform, other: Shape)
     The distance to a convex shape is a convex function along a line: it is cut in three again and
     again.
     """
-    low, high = -abs(capsule.length) / 2.0, abs(capsule.length) / 2.0
+    low = -abs(capsule.length) / 2.0
+    high = abs(capsule.length) / 2.0
 
     def distance(z: float) -> float:
         return hypot(*_outside(other, T_other_capsule.apply((0.0, 0.0, z))))

@@ -4,12 +4,15 @@ Names that look misspelt are reported too.
 """
 
 import os
-import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Literal, NamedTuple
+from posixpath import basename
+from typing import Literal
 
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
 from grader.base.problems import NO_FIXES, Effect, Fixes, Problem, in_order
+from grader.base.records import Named
 from grader.base.source import Source
 from grader.base.text import comment_spans, enumerated, quoted
 from grader.files.limits import ROBOT_ENDINGS
@@ -20,7 +23,7 @@ from grader.ros.urdf.diagnostics import Problems
 from grader.ros.urdf.joint_reader import check_references, read_joint
 from grader.ros.urdf.link_reader import Materials, read_link
 from grader.ros.urdf.link_tree import check_tree
-from grader.ros.urdf.model import Joint, Link, Robot
+from grader.ros.urdf.model import Joint, Robot
 from grader.ros.urdf.numbers import version_in
 from grader.ros.urdf.versions import (
     FIRST,
@@ -31,7 +34,7 @@ from grader.ros.urdf.versions import (
     in_words,
     newest_version,
 )
-from grader.ros.xml.parsing import Element, Unresolved, XmlDocument, read_document
+from grader.ros.xml.parsing import Element, Elements, Unresolved, XmlDocument, read_document
 from grader.ros.xml.python_xml import python_xml_error
 from grader.ros.xml.urdf_format import (
     ATTRIBUTES,
@@ -52,7 +55,7 @@ _DROPPING = {
     urdf_problems.BAD_COLLISION,
     urdf_problems.BAD_INERTIAL,
 }
-_XACRO = re.compile(r"<xacro:|\$\{|\$\(")
+_XACRO = on_use(r"<xacro:|\$\{|\$\(")
 # Correct names that urdfdom does not read: they are not misspellings.
 _EXTENSIONS = frozenset(
     {"gazebo", "transmission", "hardwareInterface", "ros2_control", "sensor", "plugin"}
@@ -60,7 +63,7 @@ _EXTENSIONS = frozenset(
 )
 
 
-class Reading(NamedTuple):
+class Reading(Named):
     """A URDF as a release of ROS 2 reads it: the verdict, the robot, and all that is wrong with it.
 
     `read_urdf` makes it of any text, and never raises; xacro is expanded before, in
@@ -157,17 +160,17 @@ def read_urdf(
 
 def read_robot(document: XmlDocument, newest: UrdfVersion = FIRST) -> Reading:
     """Read a document as `read_urdf` does; its list of problems is extended."""
-    root, source, listed = document.root, document.source, document.problems
+    root = document.root
+    source = document.source
+    listed = document.problems
     for content in (root, document.recovered):
         if content is not None and content.tag == "robot":
             return _read_content(document, content, newest)
     effects = {problem.kind.effect for problem in listed}
     if effects.isdisjoint(_FATAL):
         effects.add("rejects")
-        message, at = (
-            "the file has no <robot> at its top level; ROS 2 rejects it",
-            source.at(document.first_tag),
-        )
+        message = "the file has no <robot> at its top level; ROS 2 rejects it"
+        at = source.at(document.first_tag)
         if root is not None:
             message = (
                 "the root of the file is "
@@ -186,13 +189,13 @@ def read_with_dropped(reading: Reading, releases: Iterable[Release]) -> Robot | 
     root = reading.elements
     kinds = {problem.kind for problem in reading.problems}
     is_refused = any(kind.is_before_ros for kind in kinds)
-    if root is None or reading.robot is None or not (is_refused or _DROPPING & kinds):
+    if root is None or not reading.robot or not (is_refused or _DROPPING & kinds):
         return None
     is_expanded = reading.source.is_expanded
     document = XmlDocument(
         reading.root, reading.source, [], 0, reading.unresolved, is_expanded=is_expanded
     )
-    newest = newest_version([*releases])
+    newest = newest_version(list(releases))
     robot, _ = _read_robot(document, root, newest, keeps_dropped=True)
     return replace(reading.robot, links=robot.links)
 
@@ -224,15 +227,20 @@ def _read_content(document: XmlDocument, root: Element, newest: UrdfVersion) -> 
 
 
 def _problems_of_unbroken_lines(
-    problems: Iterable[Problem], reported: Iterable[Problem]
+    problems: Iterable[Problem], reported: Sequence[Problem]
 ) -> list[Problem]:
-    """Return problems of a robot in lines that have no problem yet, but no consequences."""
-    broken = {problem.location.line for problem in reported}
-    return [
-        problem
-        for problem in problems
-        if not problem.kind.is_consequence and problem.location.line not in broken
-    ]
+    """Return problems of a robot in lines that have no problem yet, but no consequences.
+
+    What a tag says is wrong also where another one is assumed to be closed.
+    """
+    lines = {problem.location.line for problem in reported}
+    broken = {problem.location.line for problem in reported if problem.kind.severity == "error"}
+    unbroken = []
+    for problem in problems:
+        hidden = broken if problem.kind in urdf_problems.OF_ATTRIBUTES else lines
+        if not problem.kind.is_consequence and problem.location.line not in hidden:
+            unbroken.append(problem)
+    return unbroken
 
 
 def _problems_for_python(document: XmlDocument, robot: Robot) -> Iterator[Problem]:
@@ -244,13 +252,14 @@ def _problems_for_python(document: XmlDocument, robot: Robot) -> Iterator[Proble
     error = python_xml_error(document.source.text) if is_moving else None
     if error is None:
         return
-    at = document.source.at(error.offset)
+    reason, offset = error
+    at = document.source.at(offset)
     same_line = (
         problem.subject
         for problem in document.problems
         if problem.location.line == at.line and problem.kind is NOT_WELL_FORMED
     )
-    message = f"joint_state_publisher cannot read this file ({next(same_line, error.message)})"
+    message = f"joint_state_publisher cannot read this file ({next(same_line, reason)})"
     message += ": in RViz no moving link has a transform"
     yield Problem(urdf_problems.NOT_FOR_PYTHON, message, at)
 
@@ -278,8 +287,8 @@ def _read_robot(
     materials = Materials(problems)
     for element in root.iterchildren("material"):
         materials.define(element)
-    links: dict[str, Link] = {}
-    elements: dict[str, Element] = {}
+    links = {}
+    elements: Elements = {}
     for element in root.iterchildren("link"):
         link = read_link(element, problems, materials)
         if link.name in links:
@@ -323,7 +332,7 @@ def _why_incomplete(document: XmlDocument, robot: Robot) -> str:
     """
     root = document.root if document.root is not None else document.recovered
     unresolved = document.unresolved.get(root) if root is not None else None
-    if unresolved is not None and unresolved.content:
+    if unresolved and unresolved.content:
         return unresolved.content
     parts_of_elements = [link.unresolved for link in robot.links]
     parts_of_elements += [joint.unresolved for joint in robot.joints]
@@ -335,8 +344,8 @@ def _why_incomplete(document: XmlDocument, robot: Robot) -> str:
 
 
 def _read_joints(root: Element, problems: Problems) -> tuple[Joint, ...]:
-    joints: list[Joint] = []
-    elements: dict[str, Element] = {}
+    joints = []
+    elements: Elements = {}
     for element in root.iterchildren("joint"):
         joint = read_joint(element, problems)
         joints.append(joint)
@@ -348,10 +357,10 @@ def _read_joints(root: Element, problems: Problems) -> tuple[Joint, ...]:
     return tuple(joints)
 
 
-def _check_root_inertia(robot: Robot, links: dict[str, Element], problems: Problems) -> None:
+def _check_root_inertia(robot: Robot, links: Elements, problems: Problems) -> None:
     children = {joint.child for joint in robot.joints}
     for link in robot.links:
-        if link.inertial is not None and link.name not in children:
+        if link.inertial and link.name not in children:
             message = (
                 f"the root link {quoted(link.name)} has an inertia: KDL ignores it, "
                 "robot_state_publisher warns"
@@ -371,7 +380,7 @@ def find_xacro(text: str) -> int | None:
     outside = 0  # where the text begins that is after the last comment
     for start, end in (*comment_spans(text), (len(text), len(text))):
         match = _XACRO.search(text, outside, start)
-        if match is not None:
+        if match:
             return match.start()
         outside = end
     return None
@@ -383,7 +392,7 @@ def _check_text(problems: Problems, *, is_expanded: bool) -> None:
     if xacro is not None:
         from shlex import quote  # late: most files are no xacro
 
-        name = problems.source.path.rpartition("/")[2]
+        name = basename(problems.source.path)
         message = (
             "this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro "
             f"xacro {quote(name)}`"
@@ -430,7 +439,8 @@ def _check_spelling(root: Element, problems: Problems) -> None:
 
 
 def _check_attributes(element: Element, problems: Problems) -> None:
-    known, given = ATTRIBUTES[element.tag], list(map(str, element.keys()))
+    known = ATTRIBUTES[element.tag]
+    given = list(map(str, element.keys()))
     missing = known - set(given)
     for name in given:
         if name in known or name.startswith("{"):
@@ -453,9 +463,7 @@ def _check_attributes(element: Element, problems: Problems) -> None:
             )
 
 
-def _check_unread(
-    child: Element, parent: Element, allowed: tuple[str, ...], problems: Problems
-) -> None:
+def _check_unread(child: Element, parent: Element, allowed: Strings, problems: Problems) -> None:
     """Report an element that urdfdom does not read, unless it is in the place of an extension."""
     if child.tag not in _EXTENSIONS or (child.tag in ELSEWHERE and parent is not problems.root):
         _check_tag(child, parent.tag, allowed, problems)
@@ -464,7 +472,7 @@ def _check_unread(
             _check_tag(inner, child.tag, (), problems)
 
 
-def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], problems: Problems) -> None:
+def _check_tag(child: Element, parent: str, allowed: Strings, problems: Problems) -> None:
     if child.tag.startswith("{"):  # a prefix is not a misspelling
         return
     instead = ELSEWHERE.get(child.tag, "")

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import combinations, product
 from math import atan2, cos, degrees, hypot, inf, isfinite, pi, radians, sin
-from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.records import Named
 from grader.base.transforms import (
     X_AXIS,
     Z_AXIS,
@@ -28,6 +28,8 @@ from grader.base.transforms import (
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Capsule, Collision, Cylinder, Mesh, Visual
 from grader.ros.urdf.shapes import PlacedShape, UnknownShape, bounding_radius
+
+_Points = list[Vector]
 
 _TOUCHING = 1e-4  # metres above the ground at which a link still touches it
 MAX_SHAPES = 300
@@ -49,14 +51,14 @@ _MAX_FALL = 12  # poses
 _FLAT = 1e-3  # the sine of the angle from which on a cylinder stands on one point of its rim
 
 
-class _LinkShape(NamedTuple):
+class _LinkShape(Named):
     """A shape of a link, placed in the frame of the base."""
 
     link: str
     shape: PlacedShape
 
 
-class _RestingBody(NamedTuple):
+class _RestingBody(Named):
     """What decides how a robot stands: its shapes and its centre of mass, in the frame of the base.
 
     `is_weighed` says that the robot has masses; otherwise its shapes have equal density.
@@ -69,11 +71,13 @@ class _RestingBody(NamedTuple):
     def lowest(self, up: Vector) -> Vector:
         """Return the lowest point of all shapes; `up` is the direction away from the ground."""
         down = (-up[0], -up[1], -up[2])
-        lowest, height = self.mass_centre, inf
+        lowest = self.mass_centre
+        height = inf
         for _, shape in self.shapes:
             point = shape.farthest(down)
             if dot(point, up) < height:
-                lowest, height = point, dot(point, up)
+                lowest = point
+                height = dot(point, up)
         return lowest
 
     def mass_height(self, up: Vector) -> float:
@@ -81,7 +85,7 @@ class _RestingBody(NamedTuple):
         return dot(minus(self.mass_centre, self.lowest(up)), up)
 
 
-class Rest(NamedTuple):
+class Rest(Named):
     """How a robot stands: where up is as seen from the base, and which points touch the ground.
 
     `find_rest` makes it; `heights` has the height of the lowest point of each link that has a
@@ -91,7 +95,7 @@ class Rest(NamedTuple):
     up: Vector
     mass_centre: Vector
     heights: dict[str, float]
-    contacts: dict[str, list[Vector]]
+    contacts: dict[str, _Points]
 
     def leveled(self, links: Sequence[str]) -> "Rest":
         """Return how it would stand with its base level and these links on the ground."""
@@ -123,20 +127,20 @@ def make_body(robot: Configuration, base: str) -> _RestingBody:
     pose is undefined.
     """
     root = robot.find_root(base)
-    roots: dict[str, str] = {}
+    roots = {}
     shapes: list[_LinkShape] = []
-    masses: list[tuple[float, Vector]] = []
+    masses = []
     for link in robot.robot.links:
         with suppress(MissingElement):  # a link on a loop of joints is in no tree
             roots[link.name] = robot.find_root(link.name)
         if roots.get(link.name) != root:
             continue
         solids = solid_shapes(link.collisions) or solid_shapes(link.visuals)
-        if not solids and link.inertial is None:
+        if not solids and not link.inertial:
             continue
         T_base_link = robot.pose(link.name, relative_to=base)
         shapes += _place_shapes(link.name, solids, T_base_link)
-        if link.inertial is not None and link.inertial.mass > 0.0:
+        if link.inertial and link.inertial.mass > 0.0:
             masses.append((link.inertial.mass, T_base_link.apply(link.inertial.origin.xyz)))
     if len(shapes) > MAX_SHAPES:
         raise NotDecided(f"the robot has more than {MAX_SHAPES} shapes", "a robot has many shapes")
@@ -194,7 +198,7 @@ def list_fall(body: _RestingBody) -> list[tuple[Vector, float]]:
     Its base is level. The result is where up is on the way, each with the height of the centre of
     mass above the ground.
     """
-    ups: list[Vector] = []
+    ups: _Points = []
     for up in _fall(body, 180.0):
         if len(ups) > 1 and degrees_between(ups[-2], ups[-1]) < _FALL_STEP / 4.0:
             ups.pop()  # a large ball rolls far in many small steps
@@ -218,7 +222,7 @@ def _fall(body: _RestingBody, max_tilt: float) -> Iterator[Vector]:
     bottom below it, measured along the old normal, is a convex function of the slope of the ground,
     and that face is its minimum. A robot that then balances is pushed.
     """
-    up: Vector = Z_AXIS
+    up = Z_AXIS
     size = _bound_size(body)
     yield up
     for _ in range(_MAX_STEPS):
@@ -247,7 +251,8 @@ def _follow(body: _RestingBody, start: Vector, face: Vector) -> Vector:
     It goes further while the mass goes down and the way is short: a large ball rolls far in many
     small steps.
     """
-    best, step = face, minus(face, start)
+    best = face
+    step = minus(face, start)
     while hypot(*step) < _LEAP:
         step = (2.0 * step[0], 2.0 * step[1], 2.0 * step[2])
         further = unit((start[0] + step[0], start[1] + step[1], start[2] + step[2]))
@@ -276,7 +281,7 @@ def _face_below(body: _RestingBody, up: Vector, size: float) -> Vector | None:
     """
     x, y = level_directions(up)
     far = 4.0 * size
-    corners: list[Vector] = []
+    corners = []
     for number in range(3):  # above all faces that are not too steep
         angle = 2.0 * pi * number / 3.0 + 0.1
         reach = ((x, far * cos(angle)), (y, far * sin(angle)), (up, far * _STEEPEST))
@@ -307,21 +312,23 @@ def moved(point: Vector, moves: Iterable[tuple[Vector, float]]) -> Vector:
     return (x, y, z)
 
 
-def _refined(corners: list[Vector], point: Vector, centre: Vector, up: Vector) -> list[Vector]:
+def _refined(corners: _Points, point: Vector, centre: Vector, up: Vector) -> _Points:
     """Return the triangle of two corners and a point that has the centre inside.
 
     This is seen from above. The triangle is counterclockwise, as the corners are.
     """
     a, b, c = corners
-    best, best_fit = corners, (-inf, 0.0)
+    best = corners
+    best_fit = (-inf, 0.0)
     for triangle in ([point, a, b], [point, b, c], [point, c, a]):
         fit = _fit_around(triangle, centre, up)
         if fit > best_fit:
-            best, best_fit = triangle, fit
+            best = triangle
+            best_fit = fit
     return best
 
 
-def _fit_around(triangle: list[Vector], centre: Vector, up: Vector) -> tuple[float, float]:
+def _fit_around(triangle: _Points, centre: Vector, up: Vector) -> tuple[float, float]:
     """Return how well a triangle has a point inside, seen from above, and its area.
 
     The first is by how much of the area the point is outside, at most 0.
@@ -342,18 +349,20 @@ def _pushed_off_balance(body: _RestingBody, up: Vector, size: float) -> Vector |
     It can fall only if its centre of mass is straight above a line between two contacts, such as
     the axle of two wheels, or above a single one. There the slope is 0, and the curvature decides.
     """
-    best, lowest = None, body.mass_height(up) - _LOWER * size
+    best = None
+    lowest = body.mass_height(up) - _LOWER * size
     for direction in _find_loose_directions(body, up):
         pushed = unit(moved(up, [(direction, _NUDGE)]))
         if pushed is not None and body.mass_height(pushed) < lowest:
-            best, lowest = pushed, body.mass_height(pushed)
+            best = pushed
+            lowest = body.mass_height(pushed)
     return best
 
 
 def _find_loose_directions(body: _RestingBody, up: Vector) -> Iterator[Vector]:
     """Yield the directions, level, in which a robot could fall without lifting its mass first."""
     _, contacts = _measure_heights(body, up)
-    offsets: list[Vector] = []
+    offsets = []
     for points in contacts.values():
         for point in points:
             away = minus(point, body.mass_centre)
@@ -374,13 +383,11 @@ def _find_loose_directions(body: _RestingBody, up: Vector) -> Iterator[Vector]:
             yield moved((0.0, 0.0, 0.0), [(x, cos(angle)), (y, sin(angle))])
 
 
-def _measure_heights(
-    body: _RestingBody, up: Vector
-) -> tuple[dict[str, float], dict[str, list[Vector]]]:
+def _measure_heights(body: _RestingBody, up: Vector) -> tuple[dict[str, float], dict[str, _Points]]:
     """Return the height of each link above the ground, and the points of those that touch it."""
     floor = dot(body.lowest(up), up)
     heights: dict[str, float] = {}
-    contacts: dict[str, list[Vector]] = {}
+    contacts: dict[str, _Points] = {}
     for link, shape in body.shapes:
         height = shape.extent(up)[0] - floor
         heights[link] = min(height, heights.get(link, inf))
@@ -427,10 +434,10 @@ def _rim_directions(up: Vector) -> Iterator[tuple[float, float]]:
         yield (cos(angle), sin(angle))
 
 
-def lowest_points(shapes: Sequence[PlacedShape], up: Vector) -> list[Vector]:
+def lowest_points(shapes: Sequence[PlacedShape], up: Vector) -> _Points:
     """Return the points with which shapes touch the ground, or would first."""
     lowest = min(shape.extent(up)[0] for shape in shapes)
-    points: list[Vector] = []
+    points = []
     for shape in shapes:
         for point in _low_points(shape, up):
             if dot(point, up) <= lowest + _TOUCHING:

@@ -1,13 +1,13 @@
 """The slips of a URDF that ROS 2 loads all the same: it ignores a word, or drops the element."""
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from itertools import islice
 
 from grader.base import markup
 from grader.base.element_edits import escaped, tag_edits, with_attribute
 from grader.base.names import near
-from grader.base.slips import Slip
+from grader.base.slips import Slip, Slips
 from grader.base.source import Edits, Source
 from grader.base.text import cut, quoted
 from grader.ros.urdf.words import meant_attribute, meant_tag, meant_value
@@ -31,14 +31,15 @@ class RobotSlips:
         source: Source,
         unresolved: Collection[Element],
     ) -> None:
-        self._root, self._source = root, source
+        self._root = root
+        self._source = source
         self._unresolved = unresolved
         self._indices = {element: index for index, element in enumerate(root.iter())}
         self._at_places: dict[_Place, Slip] = {}
 
     def listed(self) -> list[Slip]:
         """Return the slips in the order of the elements, each place once."""
-        return [*{slip.edits: slip for slip in islice(self._find(), _MAX_SLIPS)}.values()]
+        return list({slip.edits: slip for slip in islice(self._find(), _MAX_SLIPS)}.values())
 
     def at_places(self) -> Mapping[_Place, Slip]:
         """Return the slips by the elements and attributes that they are in."""
@@ -46,9 +47,9 @@ class RobotSlips:
             pass
         return self._at_places
 
-    def _find(self) -> Iterator[Slip]:
+    def _find(self) -> Slips:
         """Yield the slips in document order: those of an element, then those inside of it."""
-        waiting: list[tuple[Element, str]] = [(self._root, "robot")]
+        waiting = [(self._root, "robot")]
         materials = self._material_slips()
         while waiting:
             element, tag = waiting.pop()
@@ -60,9 +61,7 @@ class RobotSlips:
             yield from self._child_slips(element, tag, inside)
             waiting += reversed(inside)
 
-    def _child_slips(
-        self, element: Element, tag: str, inside: list[tuple[Element, str]]
-    ) -> Iterator[Slip]:
+    def _child_slips(self, element: Element, tag: str, inside: list[tuple[Element, str]]) -> Slips:
         """Yield the slips of children's tags; `inside` gets the children that ROS 2 should read."""
         present = {str(child.tag) for child in element}
         for child in element:
@@ -93,12 +92,12 @@ class RobotSlips:
         self._at_places[element, attribute] = slip
         return slip
 
-    def _tag_slip(self, element: Element, written: str, meant: str, parent: str) -> Iterator[Slip]:
+    def _tag_slip(self, element: Element, written: str, meant: str, parent: str) -> Slips:
         edits = tag_edits(*self._place(element), written, meant)
         reaction = f"ROS 2 ignores <{written}> in <{parent}>"
         yield self._slip(element, edits, reaction, f"<{written}> is read as <{meant}>")
 
-    def _attribute_slips(self, element: Element, tag: str) -> Iterator[Slip]:
+    def _attribute_slips(self, element: Element, tag: str) -> Slips:
         if tag not in ATTRIBUTES or len(element.attrib) > _MAX_ATTRIBUTES:
             return
         values = {str(name): str(value) for name, value in element.attrib.items()}
@@ -110,11 +109,11 @@ class RobotSlips:
 
     def _attribute_slip(
         self, element: Element, tag: str, name: str, meant: str, numbers: str | None
-    ) -> Iterator[Slip]:
+    ) -> Slips:
         """Yield the slip in the name of an attribute, in its value, or in both."""
         source, start = self._place(element)
         attribute = markup.attribute(source.text, start, name)
-        if attribute is None:
+        if not attribute:
             return
         written = source.text[slice(*attribute.value)]
         value = written if numbers is None else numbers
@@ -140,7 +139,7 @@ class RobotSlips:
 
         It is where the name is used, or where nothing uses it as it is defined.
         """
-        definitions: dict[str, Element] = {}
+        definitions = {}
         uses: dict[str, list[Element]] = {}
         for element in self._root.iter("material"):
             name = element.get("name") or ""
@@ -148,18 +147,22 @@ class RobotSlips:
                 definitions[name] = element
             elif element.getparent() is not self._root:
                 uses.setdefault(name, []).append(element)
-        slips: dict[Element, Slip] = {}
+        slips = {}
         for name, elements in uses.items():
             near_name = near(name, definitions) if name and name not in definitions else None
             if near_name is None:
                 continue
-            written, meant, places = name, near_name, elements
+            written = name
+            meant = near_name
+            places = elements
             if meant not in uses and len(elements) > 1:
-                written, meant, places = near_name, name, [definitions[near_name]]
+                written = near_name
+                meant = name
+                places = [definitions[near_name]]
             for element in places:
                 source, start = self._place(element)
                 there = markup.attribute(source.text, start, "name")
-                if there is not None and decode(source.text[slice(*there.value)]) == written:
+                if there and decode(source.text[slice(*there.value)]) == written:
                     edit = with_attribute(source, start, "name", escaped(meant))
                     reaction = f"there is no material {quoted(name)}"
                     assumption = f"the material {quoted(written)} is read as {quoted(meant)}"

@@ -7,8 +7,8 @@ Lengths are metres, in the frame of the base; wheels turn at 1 rad/s.
 
 from collections.abc import Iterable, Sequence
 from math import atan2, degrees, hypot, pi, radians
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.transforms import (
     Transform,
     Vector,
@@ -28,7 +28,7 @@ _TURNS = 24  # positions of a wheel in one turn at which its lowest point is mea
 _ANY = 1e-9  # a determinant that is smaller is 0
 
 
-class DrivenWheel(NamedTuple):
+class DrivenWheel(Named):
     """A wheel in the frame of the base.
 
     It has its joint's axis, a point on it, its shapes, and where it touches the ground.
@@ -75,7 +75,7 @@ class DrivenWheel(NamedTuple):
         return max(heights) - min(heights)
 
 
-class Course(NamedTuple):
+class Course(Named):
     """How a base moves on the ground while its wheels turn, seen from above.
 
     `forward` and `left` are m/s of the point in the middle between the contacts along the x axis of
@@ -102,8 +102,8 @@ class Course(NamedTuple):
         """
         x, y = level_directions(up)
         middle = mean(wheel.contact for wheel in wheels)
-        rows: list[tuple[Vector, float]] = []
-        wheel_of_row: list[int] = []
+        rows = []
+        wheel_of_row = []
         for number, wheel in enumerate(wheels):
             lever = cross(up, minus(wheel.contact, middle))
             for held in _held_directions(wheel, up):

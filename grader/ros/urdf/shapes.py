@@ -12,11 +12,13 @@ from itertools import permutations, product
 from math import asin, degrees, hypot, inf, nan
 from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.text import quoted
 from grader.base.transforms import AXES, Transform, Vector, dot, minus, turn_between, unit
 from grader.ros.urdf.model import Box, Capsule, Cylinder, Geometry, Mesh, Sphere
 
 Shape = Box | Cylinder | Capsule | Sphere  # whose size is known, in metres
+_Difference = tuple[float, float, float]  # of size, of turn and of angle
 
 # relative to its length; a direction that leans less from a face's normal means the whole face
 _TIE = 1e-9
@@ -126,7 +128,7 @@ def _signed_half(size: float, component: float, tie: float) -> float:
     return -abs(size) / 2.0
 
 
-class ShapeDifference(NamedTuple):
+class ShapeDifference(Named):
     """The differences of two shapes in metres.
 
     They are how far the centres are apart, the largest difference of a size, and how far the turn
@@ -225,7 +227,7 @@ def _contains(shape: Shape, at: Vector) -> bool:
 
 def _differences_by_pose(
     a: Geometry, T_w_a: Transform, b: Geometry, T_w_b: Transform
-) -> Iterator[tuple[float, float, float]]:
+) -> Iterator[_Difference]:
     """Yield the difference of size, turn and angle for each way to lay a shape over another.
 
     Aligned axes come first.
@@ -244,22 +246,20 @@ def _differences_by_pose(
 
 def _long_difference(
     a: Cylinder | Capsule, T_w_a: Transform, b: Cylinder | Capsule, T_w_b: Transform
-) -> tuple[float, float, float]:
+) -> _Difference:
     """Return the size, turn and angle of the difference of two cylinders, or of two capsules."""
     size = max(_size_difference(a.radius, b.radius), _size_difference(a.length, b.length))
     lean = _nearest_chord(T_w_a.rotate(AXES[2]), T_w_b.rotate(AXES[2]))
     return size, hypot(*lean) * bounding_radius(a), _chord_angle(lean)
 
 
-def _box_differences(
-    a: Box, T_w_a: Transform, b: Box, T_w_b: Transform
-) -> Iterator[tuple[float, float, float]]:
+def _box_differences(a: Box, T_w_a: Transform, b: Box, T_w_b: Transform) -> Iterator[_Difference]:
     """Yield the size, turn and angle of the difference for each order of a box's edges."""
     axes_of_a = [T_w_a.rotate(axis) for axis in AXES]
     axes_of_b = [T_w_b.rotate(axis) for axis in AXES]
     for order in permutations(range(3)):
-        sizes: list[float] = []
-        leans: list[Vector] = []
+        sizes = []
+        leans = []
         for one, other in enumerate(order):
             sizes.append(_size_difference(a.size[one], b.size[other]))
             leans.append(_nearest_chord(axes_of_a[one], axes_of_b[other]))

@@ -20,7 +20,6 @@ from grader.ros.urdf.resting import (
     solid_shapes,
 )
 from grader.ros.urdf.rolling import Course, DrivenWheel, mean
-from grader.ros.urdf.shapes import PlacedShape
 
 _GRAVITY = 9.81  # m/s^2
 _ROUNDING = 1e-9  # metres
@@ -44,7 +43,8 @@ class StandingRobot:
         *,
         is_level: bool = False,
     ) -> None:
-        self.robot, self.named = robot, named
+        self.robot = robot
+        self.named = named
         for link in named:
             robot.link(link)
         shaped = [link.name for link in robot.robot.links if _has_shape(link)]
@@ -119,7 +119,7 @@ class StandingRobot:
     @property
     def touching(self) -> list[str]:
         """The links on which the robot rests, as they are named."""
-        return [*dict.fromkeys(self._owners[link] for link in self.rest.contacts)]
+        return list(dict.fromkeys(self._owners[link] for link in self.rest.contacts))
 
     def list_fall(self) -> list[tuple[Vector, float]]:
         """Return how it comes to rest that is set down with its base level.
@@ -136,7 +136,7 @@ class StandingRobot:
         below the centre of mass.
         """
         forward, left = level_directions(self.rest.up)
-        corners: list[tuple[float, float]] = []
+        corners = []
         for link, points in self.rest.contacts.items():
             if self._owners[link] not in self.named:
                 continue
@@ -158,12 +158,13 @@ class StandingRobot:
 
         `rollers` has the angle in degrees to the rollers of each, of omni and mecanum wheels.
         """
-        robot, up = self.robot, self.rest.up
+        robot = self.robot
+        up = self.rest.up
         wheels = []
         for number, link in enumerate(self.named):
             joint = self._find_turning_joint(link)
             T_base_joint = robot.pose(joint.child, relative_to=self.base)
-            shapes: list[PlacedShape] = []
+            shapes = []
             for name, shape in self.body.shapes:
                 if joint.name in [above.name for above in robot.chain(name)]:
                     shapes.append(shape)

@@ -82,3 +82,8 @@ OF_SLIPS = frozenset(
 OF_VALUES = frozenset(
     {SCALED_AXIS, UNPUBLISHED_JOINT, LIMIT_IN_DEGREES, DEGREES, ROOT_INERTIA, COMMENT_TRAP}
 )
+
+# Those of the attributes of one tag, whatever is around it.
+OF_ATTRIBUTES = frozenset(
+    {BAD_COLOUR, TYPE_UNKNOWN, BAD_JOINT_ORIGIN, BAD_AXIS, BAD_LIMIT, BAD_DYNAMICS, BAD_MIMIC}
+)

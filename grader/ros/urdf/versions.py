@@ -5,8 +5,8 @@ limits and sizes.
 """
 
 from collections.abc import Collection
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.ros.known.releases import Release
 from grader.ros.urdf.numbers import version_in
 
@@ -23,7 +23,7 @@ NEWEST = WITH_CHECKED_VALUES  # of any release
 _NEWEST: dict[Release, UrdfVersion] = {"lyrical": (1, 2), "rolling": (1, 2)}
 
 
-class UrdfFormat(NamedTuple):
+class UrdfFormat(Named):
     """The version of a file, and the newest one that the release reads it is for."""
 
     newest: UrdfVersion = FIRST

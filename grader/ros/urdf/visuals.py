@@ -30,7 +30,7 @@ def placed(robot: Configuration, link: str, visual: Visual, relative_to: str) ->
 def origin_place(robot: Configuration, link: str) -> LazyLocation | None:
     """Return the place of the origin that puts a link into its parent's frame."""
     joint = robot.parent_joints.get(link)
-    if joint is None:
+    if not joint:
         return place(robot.link(link).location)
     return place(joint.origin.location if joint.origin else None, "xyz") or place(joint.location)
 
@@ -45,6 +45,6 @@ def axis_place(joint: Joint) -> LazyLocation | None:
         and joint.axis is not None
         and unit(joint.axis) == (0.0, 0.0, 1.0)
     )
-    if is_z and joint.origin is not None and any(joint.origin.rpy):
+    if is_z and joint.origin and any(joint.origin.rpy):
         return place(joint.origin.location, "rpy")
     return place(joint.axis_location, "xyz") or joint.location

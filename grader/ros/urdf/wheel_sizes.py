@@ -6,8 +6,9 @@ of a joint have a size that is known; meshes have none.
 
 from collections.abc import Iterable, Iterator
 from operator import itemgetter
-from typing import NamedTuple
 
+from grader.base.grouping import group_values
+from grader.base.records import Named
 from grader.base.transforms import Z_AXIS, Vector, cross, dot, minus
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Collision, Cylinder, Joint, Sphere, Visual
@@ -16,7 +17,7 @@ _ALONG = 0.99  # the cosine of the angle between two directions that count as pa
 _OFF_AXIS = 0.05  # of the radius: how far from its axis the middle of a wheel may be
 
 
-class WheelSize(NamedTuple):
+class WheelSize(Named):
     """The wheel of a joint.
 
     `axis` is the unit axis of the joint, `middle` the middle of the wheel, or the origin of the
@@ -58,11 +59,11 @@ def _standing_for(robot: Configuration, joint: Joint) -> Iterator[Joint]:
     following = [
         candidate
         for candidate in turning
-        if candidate.mimic is not None and candidate.mimic.joint == joint.name
+        if candidate.mimic and candidate.mimic.joint == joint.name
     ]
     yield from following
     below = {joint.child, *(follower.child for follower in following)}
-    for link in [*below]:
+    for link in list(below):
         below |= {*_links_below(robot, link)}
     for other in turning:
         if other.parent in below:
@@ -76,10 +77,10 @@ def _measure_own(robot: Configuration, joint: Joint, base: str) -> WheelSize:
     """
     T_base_joint = robot.pose(joint.child, relative_to=base)
     axis = T_base_joint.rotate(robot.axis(joint))
-    shapes: list[tuple[float, float, Vector]] = []
+    shapes = []
     for link in _links_below(robot, joint.child, is_fixed=True):
         T_base_link = robot.pose(link, relative_to=base)
-        elements: list[Collision | Visual] = [*robot.link(link).collisions]
+        elements: list[Collision | Visual] = list(robot.link(link).collisions)
         elements += robot.link(link).visuals
         for element in elements:
             shape = element.geometry
@@ -106,11 +107,13 @@ def _links_below(robot: Configuration, link: str, *, is_fixed: bool = False) -> 
 
     With `is_fixed`, only fixed joints count.
     """
-    children: dict[str, list[str]] = {}
-    for joint in robot.robot.joints:
-        if joint.type == "fixed" or not is_fixed:
-            children.setdefault(joint.parent, []).append(joint.child)
-    reached, pending = {link: None}, [link]
+    children = group_values(
+        (joint.parent, joint.child)
+        for joint in robot.robot.joints
+        if joint.type == "fixed" or not is_fixed
+    )
+    reached = {link: None}
+    pending = [link]
     while pending:
         added = [child for child in children.get(pending.pop(), ()) if child not in reached]
         reached |= dict.fromkeys(added)

@@ -1,9 +1,11 @@
 """The words of a URDF that surely are meant where others are written: tags, attributes, numbers."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
+from grader.base.grouping import StringsByName, only_one
 from grader.base.names import closest, near
+from grader.base.patterns import on_use
 from grader.ros.urdf.numbers import NumberError, number, numbers, readable_numbers
 from grader.ros.xml.urdf_format import (
     ATTRIBUTES,
@@ -16,10 +18,10 @@ from grader.ros.xml.urdf_format import (
 )
 
 _MAX_LENGTH = 64  # characters of a value
-_SEPARATORS = re.compile(r"(?:(?<!\s)\s++)?[,;]\s*")
-_DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
-_BRACKETS = re.compile(r"\s*[(\[{](.*)[)\]}]\s*")
-_TIMES = re.compile(r"(?<=[\d.])\s*+[xX×*]\s*(?=[-+.\d])")  # 0.6x0.4x0.2
+_SEPARATORS = on_use(r"(?:(?<!\s)\s++)?[,;]\s*")
+_DECIMAL_COMMA = on_use(r"(?<=\d),(?=\d)")
+_BRACKETS = on_use(r"\s*[(\[{](.*)[)\]}]\s*")
+_TIMES = on_use(r"(?<=[\d.])\s*+[xX×*]\s*(?=[-+.\d])")  # 0.6x0.4x0.2
 _DASHES = str.maketrans(dict.fromkeys("‐‑‒–—−", "-"))
 _LETTERS = str.maketrans("OoIl", "0011")
 # How people write the units of attributes, without those of another unit in another element.
@@ -37,7 +39,7 @@ _UNITS = {
         ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), ("kg m^2", "kg*m^2", "kgm^2", "kg m2")
     ),
 }
-_DIGIT_AND_LETTER = re.compile(r"(?=.*\d)[-+.\dOoIl]+(?:e[-+]?\d+)?")
+_DIGIT_AND_LETTER = on_use(r"(?=.*\d)[-+.\dOoIl]+(?:e[-+]?\d+)?")
 
 
 def meant_tag(tag: str, parent: str, present: set[str]) -> str | None:
@@ -55,7 +57,7 @@ def meant_tag(tag: str, parent: str, present: set[str]) -> str | None:
     return _surely_meant(tag, [name for name in children if name not in present])
 
 
-def meant_attribute(name: str, tag: str, values: Mapping[str, str]) -> str | None:
+def meant_attribute(name: str, tag: str, values: StringsByName) -> str | None:
     """Return the attribute of `tag` that a name surely stands for.
 
     It is not among its `values` yet.
@@ -86,7 +88,7 @@ def _only_absent(name: str, tag: str, absent: list[str]) -> str | None:
         differing = sum(one != letter for one, letter in zip(name, other, strict=False))
         if len(other) == len(name) and differing == 1:
             similar.append(other)
-    return similar[0] if len(similar) == 1 else None
+    return only_one(similar)
 
 
 def _other_vector(name: str, value: str, tag: str, absent: list[str]) -> str | None:
@@ -137,7 +139,7 @@ def _without_unit(text: str, attribute: str) -> str:
 def _without_letters(text: str) -> str:
     """Return a value without brackets, and with digits for the letters that look like them."""
     bracketed = _BRACKETS.fullmatch(text)
-    inner = (bracketed[1] if bracketed is not None else text).strip()
+    inner = (bracketed[1] if bracketed else text).strip()
     words = re.split(r"([\s,;]+)", inner)
     for index, word in enumerate(words):
         if _DIGIT_AND_LETTER.fullmatch(word):
@@ -157,5 +159,5 @@ def _is_read(text: str, count: int) -> bool:
 
 def _surely_meant(name: str, known: Iterable[str]) -> str | None:
     """Return the one of a few known words that another word surely stands for."""
-    known = [*known]
+    known = list(known)
     return near(name, known) or closest(name, known, is_clear=True)

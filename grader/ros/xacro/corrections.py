@@ -5,11 +5,12 @@ There is one edit where it surely is meant, and others that hints try.
 
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from grader.base import markup
 from grader.base.element_edits import element_text, tag_edits, without_element
+from grader.base.patterns import on_use
 from grader.base.problems import Fix
+from grader.base.records import Named
 from grader.base.source import Edits, Location
 from grader.base.text import quoted
 from grader.ros.python.values import EvaluationFails
@@ -18,14 +19,12 @@ from grader.ros.xacro.texts import TEXT_IN_QUOTES
 from grader.ros.xacro.xacro_files import Files, XmlFails
 from grader.ros.xacro.xacro_nodes import XacroNode
 
-_EXPRESSION = re.compile(
-    r"\$\{([^{}]*)\}"
-)  # no brace inside: else many that open take quadratic time
-_NUMBER = re.compile(r"-?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?")
-_PRODUCT = re.compile(r"-?\s*+[\w.]++(?:\s*+[*/]\s*+[\w.]++)*+")
+_EXPRESSION = on_use(r"\$\{([^{}]*)\}")  # no brace inside: else many that open take quadratic time
+_NUMBER = on_use(r"-?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?")
+_PRODUCT = on_use(r"-?\s*+[\w.]++(?:\s*+[*/]\s*+[\w.]++)*+")
 
 
-class _XacroCorrection(NamedTuple):
+class _XacroCorrection(Named):
     """The fix of what xacro refuses, and where something is read as another thing."""
 
     fix: Fix
@@ -33,7 +32,7 @@ class _XacroCorrection(NamedTuple):
     problem: str = ""  # what is wrong, where it says more than xacro's message
 
 
-class Refusal(NamedTuple):
+class Refusal(Named):
     """What xacro refuses, and where: in an attribute, or without one in the tag itself."""
 
     error: EvaluationFails
@@ -49,17 +48,19 @@ class Refusal(NamedTuple):
 
 def find_correction(refusal: Refusal, files: Files) -> _XacroCorrection | None:
     """Return the correction of a file that is no XML, or of a name that is defined below."""
-    error, location = refusal.error, refusal.place.at(refusal.attribute)
+    error = refusal.error
+    location = refusal.place.at(refusal.attribute)
     if isinstance(error, XmlFails) and error.repair:
         return _XacroCorrection(Fix(error.repair, error.assumed), location)
     unknown = refusal.unknown
-    moved = _move_to_top(unknown, files) if unknown is not None else None
-    if unknown is None or moved is None:
+    moved = _move_to_top(unknown, files) if unknown else None
+    if not unknown or moved is None:
         return None
     is_above = moved[1][1:3] <= location[1:3]
     if is_above and moved[1].path == location.path:  # in another file it may always be below
         return None
-    named, line = f"the {unknown.kind} {quoted(unknown.name)}", moved[1].line
+    named = f"the {unknown.kind} {quoted(unknown.name)}"
+    line = moved[1].line
     sentence = f"{named} of line {line} is read above its use"
     problem = f"{named} is defined in line {line}, below its use: move it up"
     return _XacroCorrection(Fix(moved[0], sentence), moved[1], problem)
@@ -75,7 +76,9 @@ def _move_to_top(unknown: UnknownName, files: Files) -> tuple[Edits, Location] |
     definitions = []  # each with the child of the root that it is, or that includes it
     for child in root.elements:
         nodes = [child] if child.tag == tag else _list_included(child, tag, files)
-        definitions += [(child, node) for node in nodes if _defined_name(node) == unknown.name]
+        for node in nodes:
+            if node.attributes.get("name", "").removeprefix("xacro:") == unknown.name:
+                definitions.append((child, node))
     if len(definitions) != 1:
         return None
     [(child, node)] = definitions
@@ -93,11 +96,6 @@ def _list_included(child: XacroNode, tag: str | None, files: Files) -> list[Xacr
     paths = files.followed.get((child.place.source.path, child.place.tag), [])
     documents = [files.documents[path] for path in paths if path in files.documents]
     return [node for root in documents for node in root.elements if node.tag == tag]
-
-
-def _defined_name(node: XacroNode) -> str:
-    """Return the name that a property or macro defines, without a prefix, which macros may have."""
-    return node.attributes.get("name", "").removeprefix("xacro:")
 
 
 def respellings(

@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Mapping
 from itertools import chain
-from typing import NamedTuple
 
+from grader.base.grouping import Strings
 from grader.base.problems import NO_FIXES, Fixes, Kind, Problem
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.python.budget import CHARACTERS, Budget, OutOfBudget
@@ -31,14 +32,14 @@ class TagFails(XacroFails):
     """A xacro tag with a missing or wrong attribute."""
 
 
-class UndeterminedUse(NamedTuple):
+class UndeterminedUse(Named):
     """Something that cannot be determined statically, and where it is used."""
 
     reason: str
     location: Location
 
 
-class Scopes(NamedTuple):
+class Scopes(Named):
     """The macros and properties that are known at a place."""
 
     macros: XacroScope
@@ -57,7 +58,7 @@ _KINDS: Mapping[type[EvaluationFails], Kind] = {
 
 
 # The attributes that xacro knows of each tag; of others it warns.
-_ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
+_ATTRIBUTES: Mapping[str, Strings] = {
     "xacro:property": ("name", "value", "default", "remove", "scope", "lazy_eval"),
     "xacro:macro": ("name", "params"),
     "xacro:insert_block": ("name",),
@@ -140,7 +141,8 @@ class Expander:
                 RecursionError,
             ) as error:  # every element around may have more content
                 stop = error if isinstance(error, OutOfBudget) else OutOfBudget(_TOO_DEEP)
-                self._stopped, out.open = self._stopped or place, out.open or str(stop)
+                self._stopped = self._stopped or place
+                out.open = out.open or str(stop)
                 raise stop from None
             except (EvaluationFails, Undetermined) as error:
                 reason = self.report(error, place)
@@ -209,7 +211,7 @@ class Expander:
         if len(self.refused) < _MAX_CORRECTED:
             correction = find_correction(refusal, self.files)
         fixes = NO_FIXES
-        if correction is not None:
+        if correction:
             message = correction.problem or message
             fix = correction.fix
             fixes = Fixes(lambda: [fix])
@@ -238,18 +240,15 @@ class Expander:
         for name, expression in self.texts.noted:
             at = self._where(expression)
             if name == "^":
-                kind, message = (
-                    xacro_problems.XACRO_CARET,
-                    "^ is exclusive or in Python; power is **",
-                )
+                kind = xacro_problems.XACRO_CARET
+                message = "^ is exclusive or in Python; power is **"
             elif name.startswith("xacro."):
-                kind, message = xacro_problems.XACRO_MESSAGE, f"{name}() writes a message to stderr"
+                kind = xacro_problems.XACRO_MESSAGE
+                message = f"{name}() writes a message to stderr"
             else:
                 full = f"{'python' if name in ('sorted', 'range') else 'xacro'}.{name}"
-                kind, message = (
-                    xacro_problems.XACRO_DEPRECATED,
-                    f"xacro warns of {name}(): write {full}()",
-                )
+                kind = xacro_problems.XACRO_DEPRECATED
+                message = f"xacro warns of {name}(): write {full}()"
             self.warn(kind, message, *at)
 
     def _where(self, expression: str) -> tuple[ScopePlace, str | None]:

@@ -10,11 +10,13 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import groupby
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from grader.base.errors import NotDecided
 from grader.base.merge_conflicts import describe_conflicts, find_conflicts
+from grader.base.patterns import on_use
 from grader.base.problems import Problem
+from grader.base.records import Named
 from grader.base.source import Location, Source
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.values import EvaluationFails, Undetermined
@@ -41,7 +43,7 @@ if TYPE_CHECKING:
 _READING_OF_SHORT = 1_500  # parts
 
 
-class _XacroArgument(NamedTuple):
+class _XacroArgument(Named):
     """An argument that a xacro file declares."""
 
     name: str
@@ -62,8 +64,9 @@ class ExpandedSource(Source):
         work: int,
     ) -> None:
         super().__init__(source.path, source.text)
-        self.nodes: Sequence[XacroNode] = nodes
-        self._expander, self._work = expander, work
+        self.nodes = nodes
+        self._expander = expander
+        self._work = work
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
         """Return the location in the source of an expanded element.
@@ -169,16 +172,16 @@ class ExpandedSource(Source):
         return place.source.element(place.tag)
 
 
-_INSTRUCTION = re.compile(
+_INSTRUCTION = on_use(
     r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL
 )
 # What libxml2 says of <xacro:macro> and </macro>: it leaves the prefixes out.
-_OTHER_PREFIX = re.compile(
+_OTHER_PREFIX = on_use(
     r"Opening and ending tag mismatch: (?P<name>\S+) line (?P<line>\d+) and (?P=name)(?![\w.-])"
 )
 
 
-class _Expansion(NamedTuple):
+class _Expansion(Named):
     """An expanded file.
 
     If it cannot be expanded at all, `root` is None, and `recovered` is what can be read despite
@@ -222,7 +225,8 @@ def expand(
 
     `path` is that in the workspace. `others` says what is known of other arguments.
     """
-    plain, budget = Source(path, data.decode("utf-8", "surrogateescape")), workspace.budget
+    plain = Source(path, data.decode("utf-8", "surrogateescape"))
+    budget = workspace.budget
     before = budget.used
     try:
         source, refused, is_recovered = _read(data, plain, budget)
@@ -231,7 +235,7 @@ def expand(
         return _Expansion(None, plain, (problem,), (), {})
     except (Undetermined, OutOfBudget) as error:
         return _Expansion(None, plain, (), (UndeterminedUse(str(error), plain.at(0)),), {})
-    if source is None:
+    if not source:
         return _Expansion(None, plain, refused, (), {})
     files = Files(workspace, path)
     files.documents[path] = source
@@ -265,21 +269,23 @@ def _read(
     try:
         return read_nodes(data, path, budget), (), False
     except XMLSyntaxError as error:
-        what, location = f"xacro needs well-formed XML: {error.msg}", error_location(error, text)
+        what = f"xacro needs well-formed XML: {error.msg}"
+        location = error_location(error, text)
         prefixes = _OTHER_PREFIX.match(error.msg or "")
-        if prefixes is not None:
+        if prefixes:
             what = (
                 f"the end tag in line {location.line} has not the prefix of the start tag "
                 f"<{prefixes['name']}> in line {prefixes['line']}"
             )
     conflicts = find_conflicts(text.text)
     if conflicts:
-        what, location = describe_conflicts(text.text, conflicts), text.at(conflicts[0].start)
+        what = describe_conflicts(text.text, conflicts)
+        location = text.at(conflicts[0].start)
     refused = (Problem(xacro_problems.XACRO_NOT_XML, f"{what}; {STOPS}", location),)
     with suppress(XMLSyntaxError):
         return read_nodes(data, path, budget, is_repaired=True), refused, False
     recovered, assumed = recovered_nodes(data, path, budget)
-    return recovered, (*refused, *assumed) if recovered is not None else refused, True
+    return recovered, (*refused, *assumed) if recovered else refused, True
 
 
 def _instructions(text: Source) -> Iterator[Problem]:
@@ -290,7 +296,7 @@ def _instructions(text: Source) -> Iterator[Problem]:
     instruction = next(
         (match for match in _INSTRUCTION.finditer(text.text) if match["target"]), None
     )
-    if instruction is not None:
+    if instruction:
         what = f"<?{instruction['target'][:40]}?>"
         message = f"{what} comes after the comment that xacro adds, which ROS 2 rejects: remove it"
         yield Problem(MISPLACED_DECLARATION, message, text.at(instruction.start()))
@@ -304,13 +310,13 @@ def _element(
     `nodes` becomes the latter in document order.
     """
     made = make_element(_name(root.tag), _attributes(root.attributes))
-    pending: list[tuple[XacroNode, Element]] = [(root, made)]
+    pending = [(root, made)]
     while pending:
         node, element = pending.pop()
         nodes.append(node)
         if node.unresolved or node.open is not None:
             unresolved[element] = Unresolved(node.unresolved, node.open)
-        children: list[tuple[XacroNode, Element]] = []
+        children = []
         for kind, group in groupby(node.children, type):
             if kind is XacroNode:
                 inside = [child for child in group if isinstance(child, XacroNode)]

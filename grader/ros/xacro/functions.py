@@ -9,6 +9,7 @@ from typing import Any
 
 import yaml
 
+from grader.base.patterns import on_use
 from grader.ros.python.budget import Budget
 from grader.ros.python.builtins import BUILTINS, MATH, make_dict
 from grader.ros.python.expressions import evaluate
@@ -26,7 +27,7 @@ from grader.ros.python.values import (
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
 _NOT_IN_XACRO = ("iter", "next")
-_PLAIN_SEPARATORS = re.compile(r"[^\]\[\\^-]+")
+_PLAIN_SEPARATORS = on_use(r"[^\]\[\\^-]+")
 _OF_EVENT = 10  # what a part of the file is charged
 _MAX_NUMBER = 100  # characters
 _UNITS = {
@@ -38,9 +39,9 @@ _UNITS = {
     "!inches": 0.0254,
 }
 _WORDS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
-_INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]*|0x[0-9a-fA-F]+)")
+_INTEGER = on_use(r"[-+]?(?:0|[1-9][0-9]*|0x[0-9a-fA-F]+)")
 _SPECIAL = {".nan": "nan", ".inf": "inf", "+.inf": "inf", "-.inf": "-inf"}
-_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _RESOLVER: Any = yaml.resolver.Resolver()
 
 
@@ -120,7 +121,7 @@ def _no_path(*_: Value) -> Value:
 
 
 _MESSAGES = ("message", "warning", "error", "print_location")
-_XACRO: dict[str, PlainFunction] = {
+_XACRO = {
     **{name: PlainFunction(name, lambda *_, **__: "") for name in _MESSAGES},
     "fatal": PlainFunction("fatal", _fatal),
     "tokenize": PlainFunction("tokenize", _tokenize),
@@ -146,7 +147,7 @@ def read_yaml_values(data: bytes, find: Callable[[str], Value], budget: Budget) 
     budget.charge(1, len(data))
     try:
         events = yaml.parse(data.decode("utf-8"), _LOADER)
-        values = [*_Values(events, find, budget).items(yaml.StreamEndEvent)]
+        values = list(_Values(events, find, budget).items(yaml.StreamEndEvent))
     except UnicodeDecodeError:
         raise EvaluationFails("the YAML file is not UTF-8 text") from None
     except (yaml.YAMLError, ValueError) as error:
@@ -162,7 +163,9 @@ def read_yaml_values(data: bytes, find: Callable[[str], Value], budget: Budget) 
 
 class _Values:
     def __init__(self, events: Iterator[Any], find: Callable[[str], Value], budget: Budget) -> None:
-        self._events, self._find, self._budget = events, find, budget
+        self._events = events
+        self._find = find
+        self._budget = budget
         self._anchors: dict[str, Value] = {}
 
     def items(self, end: type) -> Iterator[Value]:
@@ -193,7 +196,7 @@ class _Values:
             value: Value = DottedDict((checked_key(key), next(items)) for key in items)
         else:
             is_list = isinstance(event, yaml.SequenceStartEvent)
-            value = [*self.items(yaml.SequenceEndEvent)] if is_list else self._scalar(event)
+            value = list(self.items(yaml.SequenceEndEvent)) if is_list else self._scalar(event)
         if event.anchor is not None:
             self._anchors[event.anchor] = value
         return value

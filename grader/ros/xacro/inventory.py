@@ -3,12 +3,14 @@
 They are as they are written.
 """
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 
+from grader.base.grouping import texts_among
+from grader.base.patterns import on_use
 from grader.base.source import Location
+from grader.base.text import last_part
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import EvaluationFails, Undetermined
 from grader.ros.xacro.macros import read_parameters
@@ -17,7 +19,7 @@ from grader.ros.xacro.tags import HANDLERS
 from grader.ros.xacro.texts import PIECE, TEXT_IN_QUOTES
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
-_NAME = re.compile(r"(?<![\w.])[^\W\d]\w*+(?:\.[^\W\d]\w*+)*+(?!\s*=[^=])")
+_NAME = on_use(r"(?<![\w.])[^\W\d]\w*+(?:\.[^\W\d]\w*+)*+(?!\s*=[^=])")
 
 _Definitions = dict[str, list[ScopePlace]]
 
@@ -39,7 +41,7 @@ class Inventory:
     @staticmethod
     def first_places(definitions: _Definitions, paths: Sequence[str]) -> dict[str, Location]:
         """Return where names are first defined in some files."""
-        first: dict[str, Location] = {}
+        first = {}
         for name, places in definitions.items():
             for place in places:
                 if place.source.path in paths:
@@ -60,8 +62,9 @@ def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
 
     Raises OutOfBudget.
     """
-    inventory, roots = Inventory(), [*documents]
-    namespaces: set[str | None] = set()
+    inventory = Inventory()
+    roots = list(documents)
+    namespaces = set()
     for node in chain.from_iterable(map(walk, roots)):
         if node.tag == "xacro:include":
             namespaces.add(node.attributes.get("ns"))
@@ -79,7 +82,7 @@ def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
 def _names_used(node: XacroNode, namespaces: Collection[str | None]) -> set[str]:
     """Return the names in the attributes and texts of an element, without namespaces."""
     names = set()
-    texts = [child for child in node.children if isinstance(child, str)]
+    texts = texts_among(node.children)
     for text in (*node.attributes.values(), *texts):
         for name in _names_in(text):
             first, _, other = name.partition(".")
@@ -106,11 +109,11 @@ def _note_tag(node: XacroNode, inventory: Inventory) -> str:
             inventory.used.add(name)
         case "xacro:call":
             called = node.attributes.get("macro", "")
-            inventory.called.add(called.rpartition(".")[2])
+            inventory.called.add(last_part(called))
             if "$" in called:
                 inventory.dynamic.append(node.place)
         case tag if tag.startswith("xacro:") and tag not in HANDLERS:
-            inventory.called.add(tag.removeprefix("xacro:").rpartition(".")[2])
+            inventory.called.add(last_part(tag.removeprefix("xacro:")))
     return ""
 
 
@@ -130,7 +133,7 @@ def _parameters(node: XacroNode, inventory: Inventory, budget: Budget) -> frozen
 def _names_in(text: str) -> Iterator[str]:
     """Yield the names in the expressions of a text, with dots."""
     position = text.find("$")
-    while position >= 0 and (piece := PIECE.match(text, position)) is not None:
+    while position >= 0 and (piece := PIECE.match(text, position)):
         position = piece.end()
         if piece["substitution"] is not None:
             yield from _names_in(piece["substitution"])

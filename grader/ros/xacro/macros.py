@@ -1,9 +1,10 @@
 """Macros of xacro: their parameters, and what a call binds to them."""
 
 import re
-from typing import NamedTuple
 
 from grader.base.names import near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import Undetermined
 from grader.ros.xacro.scopes import (
@@ -18,7 +19,7 @@ from grader.ros.xacro.xacro_nodes import XacroNode
 
 # A parameter with a default, by xacro's `re_macro_arg`. Possessive, to be linear: xacro also tries
 # a later quote as the end of one, and `read_parameters` refuses the texts where that matters.
-_WITH_DEFAULT = re.compile(
+_WITH_DEFAULT = on_use(
     r"""
     \s*([^\s:=]+?)\s*:?=\s*                       # side:=, side=
     (\^\|?)?                           # ^, or ^| before a default: the caller's value comes first
@@ -31,14 +32,14 @@ _WITH_DEFAULT = re.compile(
     """,
     re.ASCII | re.VERBOSE,
 )
-_QUOTED = re.compile(r"""\$\{[^}]*(?:\}|\Z)|'[^'\n]*'|"[^"\n]*\"""")
+_QUOTED = on_use(r"""\$\{[^}]*(?:\}|\Z)|'[^'\n]*'|"[^"\n]*\"""")
 
 
 class MacroError(XacroFails):
     """A macro that is not defined, or a call that does not fit its parameters."""
 
 
-class _MacroParameter(NamedTuple):
+class _MacroParameter(Named):
     """A parameter of a macro, with its default.
 
     `default` is its text, `is_forwarded` whether the caller's property of this name comes before
@@ -55,7 +56,7 @@ class _MacroParameter(NamedTuple):
         return self.name.startswith("*")
 
 
-class Macro(NamedTuple):
+class Macro(Named):
     """A macro: its element, whose children a call inserts."""
 
     name: str
@@ -67,12 +68,12 @@ def read_parameters(text: str, budget: Budget) -> tuple[_MacroParameter, ...]:
     """Return the parameters in the attribute params of a macro. Raises Undetermined."""
     if re.search("['\"]", _QUOTED.sub("", text)):
         raise Undetermined("a quote in the parameters of a macro is not closed")
-    parameters: list[_MacroParameter] = []
-    defaults: dict[str, _MacroParameter] = {}  # the last of several counts
+    parameters = []
+    defaults = {}  # the last of several counts
     while text:
         budget.charge(1, len(text))
         match = _WITH_DEFAULT.match(text)
-        if match is None:
+        if not match:
             words = text.lstrip().split(None, 1)
             if not words:
                 raise MacroError("the parameters of this macro end with a space")
@@ -142,16 +143,13 @@ def bind_defaults(
     place: ScopePlace,
 ) -> None:
     """Bind the parameters that the call at a place does not give."""
-    missing: list[str] = []
+    missing = []
     for parameter in left:
         if parameter.is_block:
             continue
         if parameter.is_forwarded and texts.is_bound(parameter.name, caller):
             holder = caller.holder(parameter.name)
-            if holder is not None:
-                definition = holder.properties[parameter.name].definition
-            else:
-                definition = None
+            definition = holder.properties[parameter.name].definition if holder else None
             texts.check_name(parameter.name, macro.body.place, "params")
             inner.bind(parameter.name, texts.find(parameter.name, caller), definition=definition)
         elif parameter.default is not None:

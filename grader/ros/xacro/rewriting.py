@@ -16,8 +16,10 @@ from typing import NamedTuple
 
 from grader.base import markup
 from grader.base.element_edits import format_number, merged, with_attribute
+from grader.base.grouping import Span, group_values
 from grader.base.markup import WORD_OF_VALUE
 from grader.base.names import closest, near
+from grader.base.patterns import on_use
 from grader.base.source import Edit, Edits, Location, Source
 from grader.ros.python.values import EvaluationSignal
 from grader.ros.xacro.corrections import (
@@ -30,20 +32,22 @@ from grader.ros.xacro.scopes import Key, ScopePlace, XacroDefinition, XacroScope
 from grader.ros.xacro.texts import Texts
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
+_Ways = list[Edits]  # to change a text
+
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
 _MAX_NAMES = 20  # that xacro refuses
-_EXPRESSION = re.compile(r"\$\{([^}]*)\}")
-_NAME = re.compile(r"(?<![\w.'\"])[^\W\d]\w*(?![\w(])")
-_NUMBER = re.compile(r"\s*+[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?\s*")
+_EXPRESSION = on_use(r"\$\{([^}]*)\}")
+_NAME = on_use(r"(?<![\w.'\"])[^\W\d]\w*(?![\w(])")
+_NUMBER = on_use(r"\s*+[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?\s*")
 # The one expression of a text that is a name, perhaps with a minus.
-_ALONE = re.compile(
+_ALONE = on_use(
     r"""(?P<before>[^$]*)
     (?: \$\{\s*(?P<sign>-?)\s*(?P<name>[^\W\d]\w*)\s*\}
       | \$\(\s*arg\s+(?P<argument>[^\s()]+)\s*\) )
     (?P<after>[^$]*)""",
     re.VERBOSE,
 )
-_LOADED = re.compile(r"\$\{\s*(?:xacro\.)?load_yaml\(")
+_LOADED = on_use(r"\$\{\s*(?:xacro\.)?load_yaml\(")
 _NO_CALL = ("value", "default", "params")  # where a name is defined that no call of a macro gives
 _MAX_ORIGINS = 3  # of a text
 _MAX_DEPTH = 4  # definitions that lead to one another
@@ -60,7 +64,7 @@ class _Written(NamedTuple):
     start: int
     text: str
     scope: XacroScope
-    attribute: tuple[int, int]  # its offsets, with name and quotes
+    attribute: Span  # its offsets, with name and quotes
     key: Key | None = None  # of what is defined with it
 
     @property
@@ -97,15 +101,15 @@ def _make_edits(changes: Iterable[_TextChange]) -> Edits | None:
 
     Returns None where two of them overlap.
     """
-    attributes: dict[tuple[str, int], list[_TextChange]] = {}
-    for change in dict.fromkeys(changes):
-        attributes.setdefault((change.written.source.path, change.written.attribute[0]), []).append(
-            change
-        )
-    edits: list[Edit] = []
+    attributes = group_values(
+        ((change.written.source.path, change.written.attribute[0]), change)
+        for change in dict.fromkeys(changes)
+    )
+    edits = []
     for inside in attributes.values():
         source, (start, end) = inside[0].written.source, inside[0].written.attribute
-        new, position = "", start
+        new = ""
+        position = start
         for written, text in sorted(inside, key=lambda change: change.written.start):
             if written.start < position:
                 return None
@@ -115,7 +119,7 @@ def _make_edits(changes: Iterable[_TextChange]) -> Edits | None:
     return tuple(edits)
 
 
-def _edits_alone(changes: Iterable[_TextChange]) -> list[Edits]:
+def _edits_alone(changes: Iterable[_TextChange]) -> _Ways:
     """Return the edits that make changes, if there are any."""
     edits = _make_edits(changes)
     return [edits] if edits else []
@@ -129,13 +133,11 @@ def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written
     source, at = place.source.element(place.tag)
     if attribute:
         markup_attribute = markup.attribute(source.text, at, attribute)
-        if markup_attribute is None:
+        if not markup_attribute:
             return None
-        start, end, span = (
-            markup_attribute.value_start,
-            markup_attribute.value_end,
-            (markup_attribute.start, markup_attribute.end),
-        )
+        start = markup_attribute.value_start
+        end = markup_attribute.value_end
+        span = (markup_attribute.start, markup_attribute.end)
     else:
         start = markup.head_end(source.text, at)[0]
         end = source.text.rfind("</", start, markup.element_end(source.text, at))
@@ -157,12 +159,12 @@ def _definition_text(definition: XacroDefinition) -> _Written | None:
     For a parameter's default it is a part of `params`.
     """
     whole = _find_text(definition.place, definition.attribute, definition.scope)
-    if whole is not None and definition.attribute == "params" and whole.text != definition.text:
+    if whole and definition.attribute == "params" and whole.text != definition.text:
         match = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
-        if match is None or not whole.text.startswith(definition.text, match.end()):
+        if not match or not whole.text.startswith(definition.text, match.end()):
             return None
         whole = whole.part(match.end(), match.end() + len(definition.text))
-    if whole is not None:
+    if whole:
         return whole._replace(key=definition.key)
     return None
 
@@ -173,36 +175,37 @@ class _Rewriter:
     def __init__(self, texts: Texts) -> None:
         self._texts = texts
 
-    def ways(self, place: ScopePlace, attribute: str, uses: Sequence[_Use]) -> list[Edits]:
+    def ways(self, place: ScopePlace, attribute: str, uses: Sequence[_Use]) -> _Ways:
         """Return the ways to change an attribute for its uses, the best first.
 
         Without a name, they change the text.
         """
         text = _find_text(place, attribute, uses[0].scope)
         changed = [use for use in uses if use.old != use.new]
-        if text is None or not changed:
+        if not text or not changed:
             return []
-        parts: list[tuple[_Use, _Written, str, str]] = []
+        parts = []
         if "$" in text.text:
             parts = [(use, *part) for use in changed for part in _parts(text, use)]
         of_definitions = self._changes_of_definitions(parts)
         if of_definitions is None:
             return []
-        ways = [*self._literal(text, changed), *self._in_calls(text, changed)]
+        ways = self._literal(text, changed) + self._in_calls(text, changed)
         computed = self._computed(parts)
         # Where it is used, it would change for other calls of a macro, too.
-        ways = [*computed, *ways] if len(changed) < len(uses) else [*ways, *computed]
-        return [*dict.fromkeys([*of_definitions, *ways])]
+        ways = (computed + ways) if len(changed) < len(uses) else (ways + computed)
+        return list(dict.fromkeys(of_definitions + ways))
 
     def _changes_of_definitions(
         self, parts: Sequence[tuple[_Use, _Written, str, str]]
-    ) -> list[Edits] | None:
+    ) -> _Ways | None:
         """Return the edits of the definitions of parts of a text; None where they are loaded.
 
         Returns none where no part is defined, or uses want different values of one definition.
         """
         changes: dict[tuple[Source, int, str], _TextChange] = {}
-        has_definition, is_one = False, True
+        has_definition = False
+        is_one = True
         for use, part, old, new in parts:
             definitions = self._definitions(part, use.scope, old, new)
             if not definitions and self._is_loaded(part):
@@ -216,7 +219,7 @@ class _Rewriter:
             return _edits_alone(changes.values())
         return []
 
-    def _computed(self, parts: Iterable[tuple[_Use, _Written, str, str]]) -> list[Edits]:
+    def _computed(self, parts: Iterable[tuple[_Use, _Written, str, str]]) -> _Ways:
         """Return the edits of what parts of a text are computed from.
 
         They are of one definition for each part.
@@ -259,7 +262,7 @@ class _Rewriter:
     ) -> Iterator[_TextChange]:
         """Yield the changes of one number in an expression with which it has another value."""
         names = [name for name in _NAME.findall(text.text) if self._find_definition(name, scope)]
-        for name in [*dict.fromkeys(names)][:_MAX_ORIGINS]:
+        for name in list(dict.fromkeys(names))[:_MAX_ORIGINS]:
             for was, value in self._solved(text, name, scope, old, new):
                 alone = text._replace(text=f"${{{name}}}")
                 is_side = was in ("1.0", "-1.0")
@@ -293,20 +296,20 @@ class _Rewriter:
         if is_solved:
             yield repr(at), format_number(solution)
 
-    def _in_calls(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
+    def _in_calls(self, text: _Written, changed: Sequence[_Use]) -> _Ways:
         """Return the edits that give a parameter in the calls of its macro.
 
         A text is the default of this parameter.
         """
         name = text.text[2:-1].strip() if text.text.startswith("${") else ""
         definition = self._find_definition(name, changed[0].scope)
-        if definition is None or definition.attribute != "params":
+        if not definition or definition.attribute != "params":
             return []
-        calls = {use.call: use.new for use in changed if use.call is not None}
+        calls = {use.call: use.new for use in changed if use.call}
         each = ((*call.source.element(call.tag), new) for call, new in calls.items())
         return [tuple(with_attribute(source, start, name, new) for source, start, new in each)]
 
-    def _literal(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
+    def _literal(self, text: _Written, changed: Sequence[_Use]) -> _Ways:
         """Return the edit that writes a value where it is used.
 
         Returns none where uses differ, or a YAML file gives it.
@@ -362,18 +365,19 @@ class _Rewriter:
         is_inside = (
             new.startswith(before) and new.endswith(after) and len(new) > len(before) + len(after)
         )
-        if match is None or not is_inside:
+        if not match or not is_inside:
             return None
         inner = new[len(before) : len(new) - len(after)]
         was = old[len(before) : len(old) - len(after)]
         if match["sign"]:
-            inner, was = _negate(inner), _negate(was)
+            inner = _negate(inner)
+            was = _negate(was)
         name = match["argument"]
         definition = (
             self._texts.defaults.get(name) if name else self._find_definition(match["name"], scope)
         )
-        written = _definition_text(definition) if definition is not None else None
-        if definition is not None and written is not None:
+        written = _definition_text(definition) if definition else None
+        if definition and written:
             return (written, definition.scope, was, inner)
         return None
 
@@ -388,7 +392,7 @@ class _Rewriter:
 
     def _find_definition(self, name: str, scope: XacroScope) -> XacroDefinition | None:
         holder = scope.holder(name)
-        if holder is not None:
+        if holder:
             return holder.properties[name].definition
         return None
 
@@ -400,7 +404,7 @@ class _Rewriter:
             one = waiting.pop(0)
             for definition in self._named(one):
                 written = _definition_text(definition)
-                if written is not None and definition.key not in by_key:
+                if written and definition.key not in by_key:
                     by_key[definition.key] = written._replace(scope=definition.scope)
                     waiting.append(by_key[definition.key])
         return list(by_key.values())
@@ -409,7 +413,7 @@ class _Rewriter:
         for expression in _EXPRESSION.findall(text.text):
             for name in _NAME.findall(expression):
                 definition = self._find_definition(name, text.scope)
-                if definition is not None:
+                if definition:
                     yield definition
         for argument in re.findall(r"\$\(\s*arg\s+([^\s()]+)\s*\)", text.text):
             if argument in self._texts.defaults:
@@ -418,7 +422,7 @@ class _Rewriter:
     def numbers(self, place: ScopePlace, attribute: str, scope: XacroScope) -> list[_Written]:
         """Return the texts that define numbers from which an attribute is computed."""
         text = _find_text(place, attribute, scope)
-        if text is not None:
+        if text:
             return [
                 definition
                 for definition in self.definitions(text)
@@ -442,7 +446,8 @@ def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
     The parts are words, or the whole text.
     """
     tokens = [text.part(*match.span()) for match in WORD_OF_VALUE.finditer(text.text)]
-    old, new = use.old.split(), use.new.split()
+    old = use.old.split()
+    new = use.new.split()
     if len(tokens) != len(old) or len(old) != len(new) or len(tokens) < 2:
         return [(text, use.old, use.new)]
     return [part for part in zip(tokens, old, new, strict=True) if not _is_equal(*part[1:])]
@@ -454,7 +459,7 @@ def _around(text: _Written, use: _Use) -> str:
     An example is ${side}_joint. It is empty if the text around it goes.
     """
     match = _ALONE.fullmatch(text.text)
-    if match is None or not (match["before"] or match["after"]):
+    if not match or not (match["before"] or match["after"]):
         return ""
     value = use.old[len(match["before"]) : len(use.old) - len(match["after"])]
     expression = text.text[len(match["before"]) : len(text.text) - len(match["after"])]
@@ -519,7 +524,7 @@ class ExpandedEdits:
     def __init__(self, source: ExpandedSource) -> None:
         self._source = source
 
-    def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
+    def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> _Ways:
         """Return the ways to give an attribute of elements of one place other values.
 
         Without a name, they are ways for the text.
@@ -550,17 +555,17 @@ class ExpandedEdits:
 
     @cached_property
     def _by_place(self) -> dict[tuple[str, int], list[int]]:
-        indices: dict[tuple[str, int], list[int]] = {}
-        for index, node in enumerate(self._source.nodes):
-            indices.setdefault((node.place.source.path, node.place.tag), []).append(index)
-        return indices
+        return group_values(
+            ((node.place.source.path, node.place.tag), index)
+            for index, node in enumerate(self._source.nodes)
+        )
 
     def corrections(self, names: Sequence[str]) -> list[_XacroMistake]:
         """Return edits that may correct names that are not known, and conditions.
 
         `names` are those that the reference and the format have.
         """
-        mistakes = [*_respelt(self._source.refused)]
+        mistakes = list(_respelt(self._source.refused))
         given = sorted({word for name in names for word in name.split("_")})
         for document in self._source.documents.values():
             edited = _conditions(document, given)
@@ -568,7 +573,7 @@ class ExpandedEdits:
         unique: dict[Edits, _XacroMistake] = {}
         for mistake in mistakes:
             unique.setdefault(mistake.edits, mistake)
-        return [*unique.values()]
+        return list(unique.values())
 
     def calls(self, edit: Edit) -> dict[str, list[Location]]:
         """Return the calls of the macros that an edit is in, by their names."""
@@ -589,7 +594,7 @@ class ExpandedEdits:
             if node.place.calls and place[:3] == edit[:3]:
                 name, call = node.place.calls[-1]
                 calls_by_name.setdefault(name, {})[call.at()] = None
-        return {name: [*calls] for name, calls in calls_by_name.items()}
+        return {name: list(calls) for name, calls in calls_by_name.items()}
 
     @cached_property
     def _rewriter(self) -> _Rewriter:
@@ -600,7 +605,7 @@ def _respelt(refusals: Sequence[Refusal]) -> Iterator[_XacroMistake]:
     """Yield the edits that correct names that are not known to similar ones."""
     for refusal in refusals[:_MAX_NAMES]:
         unknown = refusal.unknown
-        if unknown is not None:
+        if unknown:
             similar = closest(unknown.name, unknown.known)
             for edits, _ in respellings(refusal, unknown, similar):
                 yield _XacroMistake(edits, "a name that xacro does not know")

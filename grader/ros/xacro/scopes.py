@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from grader.base.names import MAX_LENGTH
+from grader.base.records import Named
 from grader.base.source import Location, Source
 from grader.ros.python.values import EvaluationFails, Namespace, Undetermined, Value
 
@@ -51,7 +52,7 @@ _NAMED_IN = {"name": "name", "value": "name", "default": "name", "params": "para
 Key = tuple[str, int, str, str]
 
 
-class XacroDefinition(NamedTuple):
+class XacroDefinition(Named):
     """Where a name got its value.
 
     This is the text in an attribute, and the scope in which it is evaluated.
@@ -70,10 +71,10 @@ class XacroDefinition(NamedTuple):
 
 
 # Names that are defined, each with the tag and attribute that define it where they are known.
-Known = Mapping[str, tuple[ScopePlace, str] | None]
+_Known = Mapping[str, tuple[ScopePlace, str] | None]
 
 
-class UnknownName(NamedTuple):
+class UnknownName(Named):
     """A name that is not defined, and those that are.
 
     `meant` is the one that it surely stands for, if there is one.
@@ -83,7 +84,7 @@ class UnknownName(NamedTuple):
     """
 
     name: str
-    known: Known
+    known: _Known
     kind: str = ""
     meant: str | None = None
 
@@ -132,7 +133,8 @@ class XacroScope:
 
     def __init__(self, parent: "XacroScope | None" = None, *, is_namespace: bool = False) -> None:
         """`is_namespace`: whether they are those of an included file with a namespace."""
-        self.parent, self.is_namespace = parent, is_namespace
+        self.parent = parent
+        self.is_namespace = is_namespace
         self.properties: dict[str, _Property] = {}
 
     @property
@@ -142,14 +144,14 @@ class XacroScope:
         Around a macro, the namespace that it is defined in does not count.
         """
         scope = self.parent
-        while not self.is_namespace and scope is not None and scope.is_namespace:
+        while not self.is_namespace and scope and scope.is_namespace:
             scope = scope.parent
         return scope
 
     def bound(self, name: str) -> Value | None:
         """Return what a name stands for without evaluating it; None if nothing binds it."""
         holder = self.holder(name)
-        if holder is not None:
+        if holder:
             return holder.properties[name].value
         return None
 
@@ -157,14 +159,14 @@ class XacroScope:
     def top(self) -> "XacroScope":
         """The scope of the whole document."""
         scope = self
-        while scope.parent is not None:
+        while scope.parent:
             scope = scope.parent
         return scope
 
     def holder(self, name: str) -> "XacroScope | None":
         """Return the nearest scope that binds a name."""
         scope: XacroScope | None = self
-        while scope is not None and name not in scope.properties:
+        while scope and name not in scope.properties:
             scope = scope.parent
         return scope
 
@@ -173,15 +175,13 @@ class XacroScope:
 
         This is a tag and attribute, where there is one.
         """
-        visible = self.parent.definitions() if self.parent is not None else {}
+        visible = self.parent.definitions() if self.parent else {}
         for name, definition in (
             (name, bound.definition) for name, bound in self.properties.items()
         ):
-            if _is_compared(name):
-                attribute = _NAMED_IN.get(definition.attribute) if definition is not None else None
-                visible[name] = (
-                    (definition.place, attribute) if definition is not None and attribute else None
-                )
+            if len(name) <= MAX_LENGTH and name.isidentifier():  # else it is not compared
+                attribute = _NAMED_IN.get(definition.attribute) if definition else None
+                visible[name] = (definition.place, attribute) if definition and attribute else None
         return visible
 
     def blocks(self) -> dict[str, tuple[ScopePlace, str] | None]:
@@ -192,8 +192,7 @@ class XacroScope:
             if name.startswith("*")
         }
         return {
-            name: (block.place, block.attribute) if block is not None else None
-            for name, block in bound.items()
+            name: (block.place, block.attribute) if block else None for name, block in bound.items()
         }
 
     def bind(
@@ -210,14 +209,14 @@ class XacroScope:
     def remove(self, name: str) -> None:
         """Remove a name from this scope and those around it."""
         scope: XacroScope | None = self
-        while scope is not None:
+        while scope:
             scope.properties.pop(name, None)
             scope = scope.parent
 
     def value(self, name: str, evaluate: _Evaluate, report: ReportFailure) -> Value:
         """Return the value of a name that this scope binds itself."""
         binding = self.properties[name]
-        if binding.failure is not None:
+        if binding.failure:
             raise binding.failure.with_traceback(None)
         if not binding.is_lazy:
             return binding.value
@@ -225,9 +224,10 @@ class XacroScope:
             raise EvaluationFails(f"the property {name} is defined by itself")
         binding.is_open = True
         try:
-            binding.value, binding.is_lazy = _literal(evaluate(binding.value, self)), False
+            binding.value = _literal(evaluate(binding.value, self))
+            binding.is_lazy = False
         except EvaluationFails as error:
-            if binding.definition is not None and not isinstance(error, Reported):
+            if binding.definition and not isinstance(error, Reported):
                 report(error, binding.definition.place, "value")
             binding.failure = Reported(str(error))
             raise binding.failure from None
@@ -237,11 +237,6 @@ class XacroScope:
         finally:
             binding.is_open = False
         return binding.value
-
-
-def _is_compared(name: str) -> bool:
-    """Return whether a name may be the one that a mistyped one stands for."""
-    return len(name) <= MAX_LENGTH and name.isidentifier()
 
 
 def _literal(value: Value) -> Value:

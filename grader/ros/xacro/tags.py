@@ -1,10 +1,10 @@
 """xacro's own tags: one function for each, as `eval_all` of ros/xacro handles it."""
 
-import re
 from collections.abc import Mapping
 from keyword import iskeyword
 
 from grader.base.names import near
+from grader.base.patterns import on_use
 from grader.ros.python.values import Undetermined, Value
 from grader.ros.xacro import xacro_problems
 from grader.ros.xacro.expander import Expander, Handler, Scopes, TagFails
@@ -47,7 +47,8 @@ def _renamed(node: XacroNode, tag: str, without: str) -> XacroNode:
     other = XacroNode(
         tag, node.place, {name: text for name, text in node.attributes.items() if name != without}
     )
-    other.children, other.unresolved = node.children, node.unresolved
+    other.children = node.children
+    other.unresolved = node.unresolved
     return other
 
 
@@ -87,8 +88,8 @@ def _call_by_name(
     expander: Expander, name: str, node: XacroNode, out: XacroNode, scopes: Scopes
 ) -> None:
     macro, around = _find_macro(name, scopes)
-    if macro is None:
-        if expander.texts.names_open is not None:
+    if not macro:
+        if expander.texts.names_open:
             raise expander.texts.names_open.with_traceback(None)
         raise MacroError(*expander.texts.unknown("macro", name, scopes.macros, expander.own_tags))
     if len(expander.calls) >= _MAX_CALLS:
@@ -121,7 +122,8 @@ def _find_macro(name: str, scopes: Scopes) -> tuple[Macro | None, Scopes]:
     if macro is None:
         *namespaces, name = name.split(".")
         for namespace in namespaces:
-            macros, names = scopes.macros.bound(namespace), scopes.symbols.bound(namespace)
+            macros = scopes.macros.bound(namespace)
+            names = scopes.symbols.bound(namespace)
             if not isinstance(macros, XacroScope) or not isinstance(names, IncludedNames):
                 return None, scopes
             scopes = Scopes(macros, names.scope)
@@ -134,11 +136,11 @@ def _insert_block(expander: Expander, node: XacroNode, out: XacroNode, scopes: S
     name = _needed(node, "name")
     for key in (f"**{name}", f"*{name}"):
         holder = scopes.symbols.holder(key)
-        if holder is not None:
+        if holder:
             block = holder.properties[key].value
             break
     else:
-        if expander.texts.names_open is not None:
+        if expander.texts.names_open:
             raise expander.texts.names_open.with_traceback(None)
         expander.budget.charge(len(scopes.symbols.properties))
         known = scopes.symbols.blocks()
@@ -153,8 +155,8 @@ def _insert_block(expander: Expander, node: XacroNode, out: XacroNode, scopes: S
         expander.content(block, new, scopes)
 
 
-_PATTERN = re.compile(r"[*\[?]")
-_NAME = re.compile(r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?")
+_PATTERN = on_use(r"[*\[?]")
+_NAME = on_use(r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?")
 
 
 def _boolean(value: Value, text: str) -> bool:
@@ -177,7 +179,9 @@ def _flag(node: XacroNode, name: str, default: str, expander: Expander, scopes: 
 
 
 def _property(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:
-    symbols, texts, given = scopes.symbols, expander.texts, node.attributes
+    symbols = scopes.symbols
+    texts = expander.texts
+    given = node.attributes
     name = _property_name(texts.text(_needed(node, "name"), symbols))
     is_removed = _flag(node, "remove", "false", expander, scopes)
     _check_ways(expander, node, name, is_removed=is_removed)
@@ -229,7 +233,7 @@ def _target(scope: str | None, name: str, symbols: XacroScope) -> XacroScope:
         return symbols.top
     if scope != "parent":
         return symbols
-    if symbols.caller is None:
+    if not symbols.caller:
         raise TagFails(f"the property {name} has the scope parent, but is outside of every macro")
     return symbols.caller
 
@@ -263,7 +267,8 @@ def _leave_names_open(
 
 
 def _arg(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:
-    name, default = _needed(node, "name"), _needed(node, "default")
+    name = _needed(node, "name")
+    default = _needed(node, "default")
     if name not in expander.texts.arguments and expander.texts.other_arguments == "unknown":
         expander.texts.arguments[name] = None
     if name not in expander.texts.arguments:

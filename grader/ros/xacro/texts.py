@@ -2,10 +2,13 @@
 
 import re
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from keyword import iskeyword
 from typing import Literal
 
+from grader.base.grouping import Strings
 from grader.base.names import did_you_mean, near
+from grader.base.patterns import on_use
 from grader.base.text import ILLEGAL
 from grader.ros.python.budget import Budget
 from grader.ros.python.expressions import evaluate
@@ -19,7 +22,6 @@ from grader.ros.python.values import (
 )
 from grader.ros.xacro.functions import GLOBALS
 from grader.ros.xacro.scopes import (
-    Known,
     Reported,
     ReportFailure,
     ScopePlace,
@@ -30,7 +32,7 @@ from grader.ros.xacro.scopes import (
 )
 
 # The tokens of xacro's lexer (`eval_text`), where ${'}'} ends at the first brace, too.
-PIECE = re.compile(
+PIECE = on_use(
     r"""
       (?P<escape>\$\$+[{(])               # $${, $$(: not evaluated
     | \$\{(?P<expression>[^}]*)\}
@@ -39,8 +41,9 @@ PIECE = re.compile(
     """,
     re.VERBOSE,
 )
-TEXT_IN_QUOTES = re.compile(r"'[^']*'|\"[^\"]*\"")
-_NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
+_TRUTH = {"true": True, "false": False}
+TEXT_IN_QUOTES = on_use(r"'[^']*'|\"[^\"]*\"")
+_NESTED_FIND = on_use(r"\$\(find +([^\s()$]+) *\)")
 _OF_PIECE, _OF_NAME = (
     2,
     20,
@@ -60,8 +63,6 @@ def _check_substitution(text: str, command: str, args: list[str]) -> None:
 
     Raises Undetermined for what xacro accepts, else EvaluationFails.
     """
-    if text.startswith("eval "):
-        raise Undetermined("$(eval ...) is not supported: use ${...}")
     if command in ("env", "optenv") and args:
         raise Undetermined(f"the environment variable {args[0]} is known only at run time")
     if text == "cwd":
@@ -108,7 +109,7 @@ class Texts:
         self._expression = ""  # that is evaluated
         # What is said of a name, and the name that it stands for, by this name and those that are
         # known.
-        self._similar: dict[tuple[str, ...], tuple[str, str | None]] = {}
+        self._similar: dict[Strings, tuple[str, str | None]] = {}
 
     def evaluate(self, text: str, scope: XacroScope) -> Value:
         """Return the value of a text.
@@ -118,12 +119,12 @@ class Texts:
         if "$" not in text:
             return text
         self._budget.charge(1, len(text))
-        values: list[Value] = []
+        values = []
         position = 0
         while position < len(text):
             self._budget.charge(_OF_PIECE)
             piece = PIECE.match(text, position)
-            if piece is None:
+            if not piece:
                 raise EvaluationFails(f"invalid expression: {text[position : position + 60]}")
             values.append(self._piece(piece, scope))
             position = piece.end()
@@ -149,11 +150,11 @@ class Texts:
     def find(self, name: str, scope: XacroScope) -> Value:
         """Return the value of a name: a property, else one of xacro's own."""
         holder = scope.holder(name)
-        if holder is not None:
+        if holder:
             return self._charge(holder.value(name, self.evaluate, self._report))
         if name in self._globals:
             return self._globals[name]
-        if self.names_open is not None:
+        if self.names_open:
             raise self.names_open.with_traceback(None)
         raise XacroFails(*self.unknown("property", name, scope, self._globals))
 
@@ -164,7 +165,7 @@ class Texts:
 
         Raises OutOfBudget: finding a similar one takes long.
         """
-        known: Known = {**dict.fromkeys(nearer), **scope.definitions()}
+        known = {**dict.fromkeys(nearer), **scope.definitions()}
         self._budget.charge(len(known))
         key = (name, *known)
         if key not in self._similar:
@@ -245,7 +246,8 @@ class Texts:
             and not expression.startswith("__")
         ):
             return self.find(expression, scope)
-        around, self._expression = self._expression, expression
+        around = self._expression
+        self._expression = expression
         try:
             value = evaluate(expression, lambda name: self.find(name, scope), self._budget)
         finally:
@@ -259,12 +261,39 @@ class Texts:
         command, *args = [word for word in text.split(" ") if word] or [""]
         if not text:
             return "$()"
+        if text.startswith("eval "):
+            return self._evaluated(text.removeprefix("eval "))
         _check_substitution(text, command, args)
         given = self.share(args[0]) if command == "find" else self.argument(args[0])
         result: str = self._charge(given)
         if "$(" in result:
             return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), result)
         return result
+
+    def _evaluated(self, expression: str) -> str:
+        """Return what $(eval ...) gives, which knows arguments and no properties."""
+        if "__" in expression:
+            raise XacroFails("$(eval ...) must not contain two underscores")
+        return self.written(evaluate(expression, self._find_argument, self._budget))
+
+    def _find_argument(self, name: str) -> Value:
+        """Return what a name stands for in $(eval ...): a number, a truth value or a text."""
+        from grader.ros.known.python_names import python_names  # late: few files use it
+
+        if name in _TRUTH:
+            return _TRUTH[name]
+        if isinstance(GLOBALS.get(name), float):
+            return GLOBALS[name]
+        is_known = name in self.arguments or self.other_arguments == "unknown"
+        if not is_known and name in (*GLOBALS, *python_names("builtins")):
+            raise Undetermined(f"{name} in $(eval ...) is not supported")
+        if not is_known:
+            raise XacroFails(f"no argument has the name {name}, and $(eval ...) knows no others")
+        text = self.argument(name)
+        for convert in (float if "." in text else int, _TRUTH.__getitem__):
+            with suppress(ValueError, KeyError):
+                return convert(text.lower())
+        return text
 
     def share(self, package: str) -> str:
         """Return the text that $(find package) gives."""
@@ -306,7 +335,7 @@ def _for_xml(value: str) -> str:
 
 def _joined(pieces: Iterable[str]) -> str:
     """Return one text of pieces; raise Undetermined as soon as it is too long."""
-    kept: list[str] = []
+    kept = []
     length = 0
     for piece in pieces:
         length += len(piece)

@@ -1,13 +1,15 @@
 """The files that a xacro file names: where they are in the workspace, and what is in them."""
 
-import posixpath
 import re
 from collections.abc import Collection
+from itertools import starmap
+from posixpath import basename, dirname, join, normpath, split
 from typing import Protocol
 
 from grader.base.errors import InputError, NotDecided
 from grader.base.merge_conflicts import describe_conflicts, find_conflicts
 from grader.base.names import near
+from grader.base.patterns import on_use
 from grader.base.source import Edits, Source
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import EvaluationFails, Undetermined
@@ -16,10 +18,10 @@ from grader.ros.xacro.texts import INSTALLED
 from grader.ros.xacro.xacro_nodes import XacroNode, read_nodes
 from grader.ros.xml.parsing import XMLSyntaxError
 
-_SHARED = re.compile(
+_SHARED = on_use(
     rf"{INSTALLED}/(?P<package>[^/]+)/share/(?P=package)(?:/+(?P<inside>.+))", re.DOTALL
 )
-_ADDED = re.compile(r".*\.(?:urdf|xacro)(.*)", re.IGNORECASE | re.DOTALL)
+_ADDED = on_use(r".*\.(?:urdf|xacro)(.*)", re.IGNORECASE | re.DOTALL)
 _MAX_OPEN = 50  # files that include each other
 _MAX_PATH = 1_000  # characters
 _OF_FILE, _OF_NAME = (
@@ -69,14 +71,16 @@ class XmlFails(EvaluationFails):
 
     def __init__(self, message: str, repair: Edits = (), assumed: str = "") -> None:
         super().__init__(message)
-        self.repair, self.assumed = repair, assumed
+        self.repair = repair
+        self.assumed = assumed
 
 
 class Files:
     """The files that are open while a document is expanded, innermost last."""
 
     def __init__(self, workspace: SurroundingFiles, path: str) -> None:
-        self._workspace, self._budget = workspace, workspace.budget
+        self._workspace = workspace
+        self._budget = workspace.budget
         self.open = [path]
         self.documents: dict[str, XacroNode] = {}  # every file that was read, as it is written
         self.broken: dict[str, Source] = {}  # the files that are no XML
@@ -111,11 +115,11 @@ class Files:
         self._budget.charge(_OF_FILE + len(self._workspace.paths) * (1 + text.count("/")))
         self._workspace.ask(text)
         shared = _SHARED.fullmatch(text)
-        if shared is not None:
-            path = self._share_path(shared["package"], posixpath.normpath(shared["inside"]))
+        if shared:
+            path = self._share_path(shared["package"], normpath(shared["inside"]))
         else:
-            path = posixpath.normpath(posixpath.join(posixpath.dirname(self.open[-1]), text))
-        if text.startswith(f"{INSTALLED}/") and shared is None:
+            path = normpath(join(dirname(self.open[-1]), text))
+        if text.startswith(f"{INSTALLED}/") and not shared:
             raise FileFails(
                 f"there is no file {text.partition('/share/')[2]}: is a slash missing after "
                 "$(find ...)?"
@@ -132,11 +136,8 @@ class Files:
 
         An example is .txt of a.xacro.txt.
         """
-        if self._workspace.is_part:
-            added = _ADDED.fullmatch(posixpath.basename(self.open[-1]))
-        else:
-            added = None
-        return added[1] if added is not None else ""
+        added = _ADDED.fullmatch(basename(self.open[-1])) if self._workspace.is_part else None
+        return added[1] if added else ""
 
     def _share_path(self, package: str, inside: str) -> str:
         """Return the path of a file that $(find package) names."""
@@ -146,7 +147,7 @@ class Files:
             raise self._absent(package)
         if source is not None:
             return source
-        return posixpath.normpath(posixpath.join(folder or "", inside))
+        return normpath(join(folder or "", inside))
 
     def read(self, path: str) -> bytes:
         """Return the bytes of a file.
@@ -176,16 +177,17 @@ class Files:
         # a path that is not text, or has controls, cannot be written in the file
         paths = [other for other in self._workspace.paths if other.isprintable()]
         self._budget.charge(len(self._workspace.paths))
-        folder, name = posixpath.split(path)
-        beside = [other for other in paths if posixpath.dirname(other) == folder]
-        names = [posixpath.basename(other) for other in beside]
+        folder, name = split(path)
+        beside = [other for other in paths if dirname(other) == folder]
+        names = [basename(other) for other in beside]
         self._budget.charge(_OF_NAME * len(names))
         same = [other for other in paths if other.lower() == path.lower()]
         if len(same) != 1:
             unknown = UnknownName(name, dict.fromkeys(names), "file", near(name, names))
             return FileFails(message, unknown)
         # The part from the first folder that differs is what is misspelt.
-        parts, others = path.split("/"), same[0].split("/")
+        parts = path.split("/")
+        others = same[0].split("/")
         while parts[0] == others[0]:
             del parts[0], others[0]
         meant = "/".join(others)
@@ -199,13 +201,10 @@ class Files:
         """
         from grader.ros.xml.repair import repair  # late: few files are broken
 
-        source = self.broken[path] = Source(path, data.decode("utf-8", "replace"))
+        source = self.broken[path] = Source.decoded(path, data)
         self._budget.charge(1, len(data))
         repaired = repair(source.text)
-        if not repaired.is_lossy:
-            edits = tuple(source.edit(*change) for change in repaired.changes)
-        else:
-            edits = ()
+        edits = tuple(starmap(source.edit, repaired.changes)) if not repaired.is_lossy else ()
         conflicts = find_conflicts(source.text)
         assumed = (
             "; ".join(assumption.message for assumption in repaired.assumed[:3])

@@ -6,20 +6,24 @@ Each has the place in the source that it came from.
 import re
 from collections.abc import Iterator
 
+from grader.base.patterns import on_use
 from grader.base.problems import Problem
 from grader.base.reuse import reuse
 from grader.base.source import Source
+from grader.base.text import blanked
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import EvaluationFails, Undetermined
 from grader.ros.xacro.scopes import ScopePlace
 from grader.ros.xml.parsing import Element, parse_xml
+
+_Attributes = dict[str, str]
 
 _Children = list["XacroNode | str"]
 _OF_TAG, _OF_ATTRIBUTE = 4, 2  # what reading one is charged
 _COMPARED = 256  # names of attributes that lxml compares for one part: each with all of its element
 
 # xacro reads the file as UTF-8, so that its parser ignores the encoding that the file declares.
-_DECLARATION = re.compile(
+_DECLARATION = on_use(
     r"""
     ^\ufeff?<\?xml\s+version\s*=\s*(["'])1\.[0-9]+\1
     (?:\s+\w+\s*=\s*(?:"[^"<>]*"|'[^'<>]*'))*        # encoding="latin-1", standalone='yes'
@@ -27,12 +31,12 @@ _DECLARATION = re.compile(
     """,
     re.VERBOSE,
 )
-_MISPLACED = re.compile(r"<\?xml\s[^<>]*\?>")
-_UNDECLARED = re.compile(r"(</?\s*)xacro:")
+_MISPLACED = on_use(r"<\?xml\s[^<>]*\?>")
+_UNDECLARED = on_use(r"(</?\s*)xacro:")
 # for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
 _STAND_IN = "\u02d0"
 _UNDECLARED_TAG = f"xacro{_STAND_IN}"
-_CDATA = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(.*?)(?:\]\]>|\Z)", re.DOTALL)
+_CDATA = on_use(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(.*?)(?:\]\]>|\Z)", re.DOTALL)
 
 
 class XacroNode:
@@ -44,16 +48,13 @@ class XacroNode:
 
     __slots__ = ("attributes", "children", "open", "place", "tag", "unresolved")
 
-    def __init__(
-        self, tag: str, place: ScopePlace, attributes: dict[str, str] | None = None
-    ) -> None:
+    def __init__(self, tag: str, place: ScopePlace, attributes: _Attributes | None = None) -> None:
         self.tag = tag
         self.place = place
-        self.attributes: dict[str, str] = attributes if attributes is not None else {}
+        self.attributes: _Attributes = attributes if attributes is not None else {}
         self.children: _Children = []
-        self.unresolved: dict[
-            str, str
-        ] = {}  # attribute -> why it cannot be determined; empty where xacro refuses it
+        # attribute -> why it cannot be determined; empty where xacro refuses it
+        self.unresolved: _Attributes = {}
         # why it may have more children or attributes; empty where xacro refuses them
         self.open: str | None = None
 
@@ -61,6 +62,11 @@ class XacroNode:
     def elements(self) -> "list[XacroNode]":
         """The children that are elements."""
         return [child for child in self.children if isinstance(child, XacroNode)]
+
+    @property
+    def text(self) -> str:
+        """Its own text, without that of its children."""
+        return "".join(child for child in self.children if isinstance(child, str)).strip()
 
 
 def walk(node: XacroNode) -> Iterator[XacroNode]:
@@ -92,9 +98,9 @@ def _read(data: bytes, path: str, is_repaired: bool) -> tuple[XacroNode, int]:
     """Return the root of an XML file, and what its attributes are charged."""
     source = Source(path, data.decode())
     text = source.text
-    xml = _DECLARATION.sub(lambda match: " " * len(match[0]), text, count=1)
+    xml = _DECLARATION.sub(blanked, text, count=1)
     if is_repaired:
-        xml = _MISPLACED.sub(lambda match: " " * len(match[0]), xml)
+        xml = _MISPLACED.sub(blanked, xml)
         xml = xml if "xmlns:xacro" in xml else _UNDECLARED.sub(r"\1xacro" + _STAND_IN, xml)
     root = parse_xml(xml.encode("utf-8", "surrogateescape"))
     definitions = root.getroottree().docinfo.internalDTD
@@ -131,7 +137,7 @@ def recovered_nodes(
 
 
 def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
-    nodes: dict[Element, XacroNode] = {}
+    nodes = {}
     for index, element in enumerate(root.iter()):
         attributes = _attributes(element)
         budget.charge(len(attributes) ** 2 // _COMPARED)
@@ -177,8 +183,8 @@ def _tag(element: Element) -> str:
     return local
 
 
-def _attributes(element: Element) -> dict[str, str]:
-    attributes: dict[str, str] = dict(element.items())  # type: ignore[arg-type]  # lxml gives str here
+def _attributes(element: Element) -> _Attributes:
+    attributes: _Attributes = dict(element.items())  # type: ignore[arg-type]  # lxml gives str here
     if "{" not in "".join(attributes):
         return attributes
     prefixes = {uri: prefix for prefix, uri in element.nsmap.items() if prefix} | {_XML: "xml"}

@@ -3,19 +3,19 @@
 These are tags that lack their prefix, which it leaves and ROS 2 ignores.
 """
 
-import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from itertools import chain, islice
 from typing import NamedTuple
 
 from grader.base.element_edits import tag_edits
-from grader.base.slips import Slip
+from grader.base.patterns import on_use
+from grader.base.slips import Slip, Slips
 from grader.ros.xacro.expansion import ExpandedSource
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 from grader.ros.xml.urdf_format import CHILDREN
 
 _MAX_NODES = 2000
-_DEFAULT = re.compile(r":?=.*")
+_DEFAULT = on_use(r":?=.*")
 # The attributes of xacro's own tags, by which a tag without the prefix is known.
 _OWN_TAGS = {
     "include": {"filename"},
@@ -35,13 +35,13 @@ class _Call(NamedTuple):
     blocks: int  # how many elements
 
 
-def xacro_slips(source: ExpandedSource) -> Iterator[Slip]:
+def xacro_slips(source: ExpandedSource) -> Slips:
     """Yield the tags that surely are calls of macros, or xacro's own, in the order of the files.
 
     A tag is a call if it gives all parameters that a macro needs and no others, and if it stands
     where a call may stand.
     """
-    roots = [*source.documents.values()]
+    roots = list(source.documents.values())
     calls = _calls(roots)
     for root in roots:
         waiting = [root]
@@ -55,7 +55,7 @@ def xacro_slips(source: ExpandedSource) -> Iterator[Slip]:
 
 def _calls(roots: Iterable[XacroNode]) -> Mapping[str, _Call]:
     """Return what the call of each macro gives."""
-    calls: dict[str, _Call] = {}
+    calls = {}
     for node in chain.from_iterable(islice(walk(root), _MAX_NODES) for root in roots):
         if node.tag == "xacro:macro":
             words = node.attributes.get("params", "").split()
@@ -75,7 +75,7 @@ def _is_xacro(node: XacroNode, calls: Mapping[str, _Call]) -> bool:
     if node.tag in _OWN_TAGS:
         return given == _OWN_TAGS[node.tag]
     call = calls.get(node.tag)
-    if call is None or len([*node.elements]) != call.blocks:
+    if not call or len(list(node.elements)) != call.blocks:
         return False
     return call.needed <= given <= call.known
 

@@ -6,18 +6,19 @@ Every word and number of the tag is read: what this cannot place is left to a co
 import re
 
 from grader.base.markup import WORD_OF_VALUE
+from grader.base.patterns import on_use
 from grader.ros.xml.tinyxml2 import decode
 from grader.ros.xml.urdf_format import PARTS, TAGS
 
 _QUOTES = "\"'“”„‘’‚"
 # The name of an attribute with what stands for its = : name==, name:, name =:, or nothing.
-_NAME = re.compile(
+_NAME = on_use(
     r"""\s*+(?P<name>[A-Za-z_][\w.-]*(?::[A-Za-z_][\w.-]*)?)
     (?:\s*+(?:=\s*+)++|\s*+:\s*+(?:=\s*+)?|\s*+)(?=["'“”„‘’‚])""",
     re.VERBOSE,
 )
 # The name of the next attribute at the end of a value whose quote is not closed.
-_NEXT = re.compile(
+_NEXT = on_use(
     r"""(?:["']\s*+|(?<!\s)\s++)?(?<![A-Za-z_.-])(?P<name>[A-Za-z_][\w-]{0,60}+)\s*+=\s*+\Z"""
 )
 
@@ -27,21 +28,23 @@ def read_attributes(tag: str, text: str) -> dict[str, str] | None:
 
     Returns None where a part of it may be anything, or where an attribute is given twice.
     """
-    attributes: dict[str, str] = {}
+    attributes = {}
     text = text.rstrip().removesuffix("/").rstrip()
     position = 0
     while text[position:].strip():
         match = _NAME.match(text, position)
-        if match is None:
+        if not match:
             return None
         start = match.end() + 1
         end = _value_end(text, match.end())
         if match["name"] in attributes or end < 0:
             return None
-        value, position = text[start:end], end + 1
+        value = text[start:end]
+        position = end + 1
         following = _next_name(tag, match["name"], value)
-        if following is not None:
-            value, position = value[: following.start()], start + following.start("name")
+        if following:
+            value = value[: following.start()]
+            position = start + following.start("name")
         elif re.search(r"=\s*\Z", value):
             return None
         attributes[match["name"]] = decode(value)
@@ -57,7 +60,7 @@ def _value_end(text: str, start: int) -> int:
             end = text.find("'", start + 1) if quote == '"' else text.find('"', start + 1)
         return end
     closing = re.compile(f"[{_QUOTES[2:]}]").search(text, start + 1)
-    return closing.start() if closing is not None else -1
+    return closing.start() if closing else -1
 
 
 def _next_name(tag: str, attribute: str, value: str) -> re.Match[str] | None:
@@ -66,7 +69,7 @@ def _next_name(tag: str, attribute: str, value: str) -> re.Match[str] | None:
     What is before it has as many numbers as the attribute.
     """
     match = _NEXT.search(value)
-    if match is None:
+    if not match:
         return None
     if tag in TAGS:
         is_attribute = match["name"] in TAGS[tag].attributes

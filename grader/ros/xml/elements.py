@@ -1,13 +1,12 @@
 """The names and texts of XML elements, and whether a text is an expected value."""
 
-import re
-
+from grader.base.patterns import on_use
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import numbers_in
 
 _Scalar = str | float | bool
 
-_MADE_UP = re.compile(r"ns\d+")  # a prefix that lxml gives an element that is made, not read
+_MADE_UP = on_use(r"ns\d+")  # a prefix that lxml gives an element that is made, not read
 _SLACK = 1e-12  # a tolerance includes its end
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 FOREIGN = (
@@ -16,7 +15,7 @@ FOREIGN = (
     "transmission",
     "sensor",
 )  # below <robot>; ROS 2 itself ignores them
-_INSTALLED = re.compile(
+_INSTALLED = on_use(
     r"/install/([^/\s]+)/share/\1(?=[/\s]|\Z)"
 )  # what the expansion makes of $(find package)
 
@@ -39,6 +38,11 @@ def list_attributes(element: Element) -> list[tuple[str, str]]:
     return [(_name_with_prefix(str(key), element), str(value)) for key, value in element.items()]
 
 
+def first_text(element: Element) -> str:
+    """Return the text in an element before what else is in it."""
+    return (element.text or "").strip()
+
+
 def text_in(element: Element) -> str:
     """Return the text in an element, without that in its children."""
     return "".join([element.text or "", *(child.tail or "" for child in element)]).strip()
@@ -50,12 +54,14 @@ def matches_value(text: str, expected: _Scalar, tolerance: float) -> bool:
     Numbers and lists are compared as numbers, true and 1 are equal.
     """
     wanted = xml_text(expected)
-    one, other = text.strip().lower(), wanted.strip().lower()
+    one = text.strip().lower()
+    other = wanted.strip().lower()
     if "true" in (one, other) or "false" in (one, other):
         if one not in _BOOLEANS:
             return one == other
         return _BOOLEANS[one] == _BOOLEANS.get(other)
-    actual, numbers = numbers_in(text), numbers_in(wanted)
+    actual = numbers_in(text)
+    numbers = numbers_in(wanted)
     if actual and numbers:
         pairs = zip(actual, numbers, strict=False)
         return len(actual) == len(numbers) and all(

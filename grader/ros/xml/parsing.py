@@ -5,12 +5,15 @@ The parser may open nothing: no file, no network, no entity.
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from lxml import etree
 
+from grader.base.grouping import StringsByName
 from grader.base.merge_conflicts import describe_conflicts, find_conflicts, without_conflicts
+from grader.base.patterns import on_use
 from grader.base.problems import Problem
+from grader.base.records import Named
 from grader.base.source import Edits, Location, Source
 from grader.ros.xml.xml_problems import (
     MERGE_CONFLICT,
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     from grader.ros.xml.tinyxml2 import Difference, Scan
 
 Element = etree._Element  # noqa: SLF001  lxml has no public name for it
+Elements = dict[str, Element]
 XMLSyntaxError = etree.XMLSyntaxError
 
 # Callers limit the number of bytes.
@@ -40,12 +44,12 @@ _PARSER = etree.XMLParser(
 # lxml turns a line break or tab in a value into a space (XML 1.0, 3.3.3), TinyXML2 keeps it. The
 # search skips all other bytes: of xyz="0 0<tab>1" it sees ="<tab>".
 _UNIMPORTANT = bytes(sorted(set(range(256)) - set(b"=\"'\t\n\r")))
-_BROKEN_VALUE = re.compile(rb"""=[\t\n\r]*(?:"[='\t\n\r]*?[\t\n\r]|'[="\t\n\r]*?[\t\n\r])""")
-_UTF_16 = re.compile(rb"\xff\xfe(?!\0\0)|\xfe\xff|<\0[^\0]\0|\0<\0[^\0]")
+_BROKEN_VALUE = on_use(rb"""=[\t\n\r]*(?:"[='\t\n\r]*?[\t\n\r]|'[="\t\n\r]*?[\t\n\r])""")
+_UTF_16 = on_use(rb"\xff\xfe(?!\0\0)|\xfe\xff|<\0[^\0]\0|\0<\0[^\0]")
 _DEFAULT_NAMESPACE = rb"xmlns[ \t\r\n]*="
 # No declaration, and no byte-order mark, which lxml takes for the encoding; or one that says what
 # TinyXML2 assumes.
-_PLAIN_START = re.compile(
+_PLAIN_START = on_use(
     rb"""
       (?!<\?|\xff\xfe|\xfe\xff|\xef\xbb\xbf)
     | <\?xml\s+version\s*=\s*["']1\.0["'](?:\s+encoding\s*=\s*["'](?i:utf-8)["'])?\s*\?>
@@ -54,18 +58,18 @@ _PLAIN_START = re.compile(
 )
 
 
-class Unresolved(NamedTuple):
+class Unresolved(Named):
     """What was not expanded of an element, with why it cannot be determined.
 
     It is empty where xacro refuses it.
     """
 
-    attributes: Mapping[str, str]  # those that are left as they are written
+    attributes: StringsByName  # those that are left as they are written
     # why there may be more attributes and children; None if there are no more
     content: str | None = None
 
 
-class XmlDocument(NamedTuple):
+class XmlDocument(Named):
     """What is read of a URDF's text.
 
     This is its root element, and everything that TinyXML2, XML or xacro rejects in it.
@@ -182,7 +186,7 @@ def _read_repaired(
     repaired = repair(text)
     source = Source(path, text, repaired.offsets)
     recovered = parse_xml(repaired.xml) if repaired.xml else None
-    problems = _problems([*refused, *repaired.assumed], source)
+    problems = _problems(refused + repaired.assumed, source)
     return XmlDocument(None, source, problems, first_tag, recovered=recovered)
 
 
@@ -222,8 +226,8 @@ def is_plain(data: bytes) -> bool:
         and data.find(b"<?", 1) < 0
         and data.count(b"<!") == data.count(b"<!--")
         and _PLAIN_START.match(data) is not None
-        and _BROKEN_VALUE.search(data.translate(None, _UNIMPORTANT)) is None
-        and (b"xmlns" not in data or re.search(_DEFAULT_NAMESPACE, data) is None)
+        and not _BROKEN_VALUE.search(data.translate(None, _UNIMPORTANT))
+        and (b"xmlns" not in data or not re.search(_DEFAULT_NAMESPACE, data))
     )
 
 
@@ -275,7 +279,8 @@ def parse_root(text: str) -> tuple[Element | None, Source]:
 
     Where it is no XML, it is read as ROS 2 reads it.
     """
-    data, source = text.encode("utf-8", "surrogateescape"), Source("", text)
+    data = text.encode("utf-8", "surrogateescape")
+    source = Source("", text)
     try:
         return XmlFile(data, source).root, source
     except XmlFault:

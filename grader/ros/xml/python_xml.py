@@ -3,22 +3,15 @@
 joint_state_publisher uses it, not TinyXML2 as the rest of ROS 2.
 """
 
-from typing import NamedTuple, NoReturn
-
-
-class _PythonXmlError(NamedTuple):
-    """Why Python's parser refuses a text, and the offset at which it stops."""
-
-    message: str
-    offset: int
+from typing import NoReturn
 
 
 class _DeclaresEntities(Exception):
     """A text whose entities would have to be expanded."""
 
 
-def python_xml_error(text: str) -> _PythonXmlError | None:
-    """Return why `xml.dom.minidom` cannot parse a text.
+def python_xml_error(text: str) -> tuple[str, int] | None:
+    """Return why `xml.dom.minidom` cannot parse a text, and the offset at which it stops.
 
     Returns None if it can, or if the text declares entities.
 
@@ -35,7 +28,7 @@ def python_xml_error(text: str) -> _PythonXmlError | None:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         offset = len(data[: parser.ErrorByteIndex].decode("utf-8", "surrogateescape"))
-        return _PythonXmlError(expat.ErrorString(error.code), offset)
+        return expat.ErrorString(error.code), offset
     except _DeclaresEntities:
         return None
     return None

@@ -6,14 +6,15 @@ format of a URDF: a tag that does not fit closes those that are in its way.
 
 import re
 from bisect import bisect_right
-from collections.abc import Mapping
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
 from grader.base.element_edits import empty_element
+from grader.base.grouping import Span, StringsByName
 from grader.base.markup import indentation
 from grader.base.merge_conflicts import find_conflicts, without_conflicts
 from grader.base.names import folded, near
+from grader.base.patterns import on_use
 from grader.base.source import Edits, Source
 from grader.base.text import enumerated
 from grader.ros.xml import xml_problems
@@ -32,13 +33,13 @@ from grader.ros.xml.urdf_format import CHILDREN, PARTS, REQUIRED, TAGS, numbers_
 
 # What is no tag: a comment, a CDATA section, a declaration, a DOCTYPE. A declaration may lack its
 # end, ?>.
-_OTHER = re.compile(
+_OTHER = on_use(
     r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?[^<]*?\?>|(?P<declaration><\?[^<>]*>?)|<!(?!--|\[CDATA\[).*?>",
     re.DOTALL,
 )
 # A broken tag to its > or to the next tag, and the attributes in it.
-_BROKEN = re.compile(r"<\s*+(?P<close>/?)\s*+(?P<name>[A-Za-z_][\w:.-]*)(?P<rest>[^<>]*)>?")
-_ATTRIBUTE = re.compile(
+_BROKEN = on_use(r"<\s*+(?P<close>/?)\s*+(?P<name>[A-Za-z_][\w:.-]*)(?P<rest>[^<>]*)>?")
+_ATTRIBUTE = on_use(
     r"""
     (?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:
         "([^"]*)"? | '([^']*)'?    # link="base", or link="base at the end of the tag
@@ -48,21 +49,21 @@ _ATTRIBUTE = re.compile(
     """,
     re.VERBOSE,
 )
-_WORD = re.compile(r"[-+]?[\w.]*\w")
-_EMPTY_CALL = re.compile(
+_WORD = on_use(r"[-+]?[\w.]*\w")
+_EMPTY_CALL = on_use(
     r"<(xacro:(?!(?:property|if|unless|macro|call|element)\b)[\w.-]++)(?:\s[^<>]*+|/)(?<=/)>"
 )
-_MACRO = re.compile(r"""<xacro:macro\s+name="([\w.-]+)"\s+params="([^"<]*)\"""")
-_NAMELESS = re.compile(r"""\s*=\s*["']([^"']*)["']""")
-_NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
+_MACRO = on_use(r"""<xacro:macro\s+name="([\w.-]+)"\s+params="([^"<]*)\"""")
+_NAMELESS = on_use(r"""\s*=\s*["']([^"']*)["']""")
+_NAME = on_use(r"<\s*+([A-Za-z_][\w:.-]*)")
 # Elements for other tools, and of xacro, which stand in the robot; those of xacro have no URDF in
 # them.
 _XACRO = ("xacro:property", "xacro:arg", "xacro:include")
 _TOP = ("gazebo", "transmission", "ros2_control", *_XACRO)
 _AROUND = {"xacro:macro", "xacro:if", "xacro:unless"}  # elements of xacro with URDF in them
 _TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags), *_XACRO}
-_ARROW = re.compile(r"(?<!-)->(?=[ \t]*(?:\r?\n|<))")
-_VISIBLE = re.compile(r"[^\r\n]")
+_ARROW = on_use(r"(?<!-)->(?=[ \t]*(?:\r?\n|<))")
+_VISIBLE = on_use(r"[^\r\n]")
 # where reading stops; urdfdom never looks deeper than robot/link/visual/geometry/box
 _MAX_DEPTH = 32
 _MAX_ASSUMED = 20
@@ -98,39 +99,39 @@ class _Repair(NamedTuple):
 def repair(text: str) -> _Repair:
     """Return the changes that repair a text, and the robot that is read after them."""
     conflicts = find_conflicts(text)
-    changes: list[_TextEdit] = []
+    changes = []
     for conflict in conflicts:
         changes += [_TextEdit(start, end, "") for start, end in conflict.removed]
     kept = without_conflicts(text, conflicts)
-    assumed: list[Difference] = []
+    assumed = []
     for start, end in unclosed_comments(kept):
         changes.append(_TextEdit(end - 2, end, "-->"))
         message = "the comment ends here: -> is read as -->"
         assumed.append(Difference(xml_problems.RECOVERED, message, end - 2))
         kept = f"{kept[:start]}{_VISIBLE.sub(' ', kept[start:end])}{kept[end:]}"
     repaired = _Repairer(kept).run()
-    assumed = [*assumed, *repaired.assumed] if repaired.xml else []
+    assumed = (assumed + repaired.assumed) if repaired.xml else []
 
     def is_in_tag(change: _TextEdit) -> bool:
         """Return whether a change is in a tag that is replaced: a comment in a value."""
         return any(tag.start <= change.start < tag.end for tag in repaired.changes)
 
     kept_changes = [change for change in changes if not is_in_tag(change)]
-    return repaired._replace(changes=sorted([*repaired.changes, *kept_changes]), assumed=assumed)
+    return repaired._replace(changes=sorted(repaired.changes + kept_changes), assumed=assumed)
 
 
-def unclosed_comments(text: str) -> list[tuple[int, int]]:
+def unclosed_comments(text: str) -> list[Span]:
     """Return the offsets of comments that end with -> by mistake.
 
     They run to the end of another one or of the text.
     """
-    comments: list[tuple[int, int]] = []
+    comments: list[Span] = []
     position = text.find("<!--")
     while position >= 0 and len(comments) < _MAX_ASSUMED:
         end = text.find("-->", position + 4)
         whole = end if end >= 0 else len(text)
         arrow = _ARROW.search(text, position + 4, whole)
-        if arrow is not None and (end < 0 or text.find("<!--", arrow.end(), whole) >= 0):
+        if arrow and (end < 0 or text.find("<!--", arrow.end(), whole) >= 0):
             comments.append((position, arrow.end()))
             whole = arrow.end()
         position = text.find("<!--", whole)
@@ -172,14 +173,15 @@ class _Repairer:
 
     def _read(self) -> int:
         """Read the tags of the first robot; return the offset at which reading stops."""
-        position, text = 0, self._text
+        position = 0
+        text = self._text
         while len(self._assumed) < _MAX_ASSUMED and len(self._open) <= _MAX_DEPTH:
             start = text.find("<", position)
             if start < 0:
                 return len(text)
             if text.startswith(("<!", "<?"), start):
                 other = _OTHER.match(text, start)
-                if other is None:
+                if not other:
                     return start  # a comment or the like without an end
                 position = other.end()
                 self._repair_declaration(other)
@@ -195,7 +197,7 @@ class _Repairer:
     def _read_tag(self, start: int) -> int:
         """Read the tag at an offset; return the offset after it."""
         tag, end = self._tag(start)
-        if tag is None:
+        if not tag:
             return end
         if not self._open and tag.name != "robot":
             if tag.form == "close":  # TinyXML2 reads no further
@@ -223,11 +225,12 @@ class _Repairer:
             tag, end = read_tag(self._text, start, lambda *_: None)
         except MalformedTagError as error:
             match = _BROKEN.match(self._text, start)
-            if match is None:
+            if not match:
                 self._assume("a < without the name of a tag is ignored", start)
                 self._replace(start, start + 1, "")
                 return None, max(error.resume, start + 1)
-            tag, end = self._broken(match), match.end()
+            tag = self._broken(match)
+            end = match.end()
         if tag.form == "empty" and self._has_end(tag, end):
             self._assume(f"<{short(tag.name)} .../> is read as <{short(tag.name)} ...>", start)
             self._replace(
@@ -251,7 +254,8 @@ class _Repairer:
 
         A value without a name is that of the attribute that the tag needs.
         """
-        name, rest = match["name"], match["rest"].rstrip()
+        name = match["name"]
+        rest = match["rest"].rstrip()
         if match["close"]:
             self._replace(*match.span(), f"</{name}>")
             return Tag(name, "close", {}, match.start())
@@ -260,10 +264,7 @@ class _Repairer:
             attributes = _readable_attributes(name, rest)
             self._is_lossy |= _loses_words(rest, attributes)
         is_value_lost = "=" in rest and not attributes
-        if attributes:
-            what = f"with {enumerated(list(map(short, attributes)))}"
-        else:
-            what = "without attributes"
+        what = f"with {enumerated(map(short, attributes))}" if attributes else "without attributes"
         self._assume(
             f"<{short(name)}> is read {what}", match.start(), name if is_value_lost else ""
         )
@@ -414,10 +415,8 @@ class _Repairer:
         """
         if self._robot is None:
             return b"", []
-        pieces: list[str] = []
-        places: list[
-            tuple[int, int]
-        ] = []  # of the pieces: the offset after the changes, and the one before
+        pieces = []
+        places = []  # of the pieces: the offset after the changes, and the one before
         position = self._robot
         length = 0
         for change in changes:
@@ -461,14 +460,14 @@ def _readable_attributes(tag: str, text: str) -> dict[str, str]:
             if other:
                 attributes[other] = value
     nameless = _NAMELESS.match(text)
-    if nameless is not None:
+    if nameless:
         main = _main_attribute(tag)
         if main not in attributes and _has_numbers(main, nameless[1]):
             return {main: decode(nameless[1]), **attributes}
     return attributes
 
 
-def _loses_words(text: str, attributes: Mapping[str, str]) -> bool:
+def _loses_words(text: str, attributes: StringsByName) -> bool:
     """Return whether a word or a number in the text of a broken tag is in no attribute."""
     kept = {word for pair in attributes.items() for part in pair for word in _WORD.findall(part)}
     return not kept.issuperset(_WORD.findall(decode(text)))
@@ -519,7 +518,7 @@ def _joined(changes: list[_TextEdit]) -> list[_TextEdit]:
     for change in changes:
         last = joined[-1] if joined else None
         if (
-            last is not None
+            last
             and last.end == change.start
             and not (last.is_replacement and change.is_replacement)
         ):
@@ -535,15 +534,13 @@ def _broken_tag(text: str, start: int) -> str:
         read_tag(text, start, lambda *_: None)
     except MalformedTagError:
         match = _BROKEN.match(text, start)
-        if match is not None:
+        if match:
             return match[0].rstrip()
         return ""
     return ""
 
 
-def rewritten_tag(
-    source: Source, start: int, tag: str, attributes: Mapping[str, str]
-) -> Edits | None:
+def rewritten_tag(source: Source, start: int, tag: str, attributes: StringsByName) -> Edits | None:
     """Return the edit that writes the broken tag at an offset anew, with these attributes.
 
     There is none where the end of the tag is not known. Return None if it is not broken.

@@ -12,17 +12,22 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import Literal, NamedTuple
 
+from grader.base.patterns import on_use
 from grader.base.problems import Kind
 from grader.base.text import ILLEGAL, cut
 from grader.ros.xml import xml_problems
 from grader.ros.xml.urdf_format import TAGS
 
+_Attributes = dict[str, str]
+
 # --- Attribute values
 
 _ENTITIES = {b"quot;": b'"', b"amp;": b"&", b"apos;": b"'", b"lt;": b"<", b"gt;": b">"}
-_KNOWN_REFERENCE = re.compile(rb"&(?:(quot;|amp;|apos;|lt;|gt;)|#)")
-_DECIMAL, _HEXADECIMAL = b"0123456789", b"0123456789abcdefABCDEF"
-_LAST_CODE_POINT, _FIVE_BYTES = 0x10FFFF, 0x200000
+_KNOWN_REFERENCE = on_use(rb"&(?:(quot;|amp;|apos;|lt;|gt;)|#)")
+_DECIMAL = b"0123456789"
+_HEXADECIMAL = b"0123456789abcdefABCDEF"
+_LAST_CODE_POINT = 0x10FFFF
+_FIVE_BYTES = 0x200000
 _ESCAPES = str.maketrans(
     {
         "&": "&amp;",
@@ -37,7 +42,7 @@ _ESCAPES = str.maketrans(
 )
 
 # A bare & or an entity that XML does not define.
-_BARE_AMPERSAND = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
+_BARE_AMPERSAND = on_use(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
 
 
 def decode(raw: str) -> str:
@@ -50,7 +55,7 @@ def decode(raw: str) -> str:
     references = _References(source)
     decoded = bytearray()
     read = 0
-    while (match := _KNOWN_REFERENCE.search(source, read)) is not None:
+    while match := _KNOWN_REFERENCE.search(source, read):
         _copy(source, read, match.start(), decoded)
         piece, width = (
             (_ENTITIES[match[1]], len(match[0])) if match[1] else references.at(match.start())
@@ -120,7 +125,9 @@ class _References:
 
     def _number(self, digits: bytes, radix: int) -> tuple[int, int]:
         # TinyXML2 10 multiplies in 32 bits and adds in 64, so very long numbers overflow.
-        first, code, factor = self._semicolon, 0, 1
+        first = self._semicolon
+        code = 0
+        factor = 1
         while first > 0 and self._source[first - 1] in digits:
             first -= 1
             code += factor * int(chr(self._source[first]), radix) % 2**32
@@ -170,11 +177,11 @@ _Note = Callable[
     [str, str, int], None
 ]  # the kind of a difference from XML, its description and its offset
 
-_BLANK = re.compile(r"[ \t\n\v\f\r]*")
+_BLANK = on_use(r"[ \t\n\v\f\r]*")
 # A letter, _, : or a character that is not ASCII, then also digits, . and -; as what is not in it,
 # because a set of all other characters of Unicode takes 5 ms to compile.
-_NAME = re.compile(r"[^\0-9;-@\[-^`{-\x7f][^\0-,/;-@\[-^`{-\x7f]*")
-_PLAIN_NAME = re.compile(r"(?!(?i:xml))[A-Za-z_][A-Za-z0-9_.\-]*")
+_NAME = on_use(r"[^\0-9;-@\[-^`{-\x7f][^\0-,/;-@\[-^`{-\x7f]*")
+_PLAIN_NAME = on_use(r"(?!(?i:xml))[A-Za-z_][A-Za-z0-9_.\-]*")
 MAX_NAME_LENGTH = 60  # the longest name that urdfdom knows has 17 letters
 
 
@@ -186,7 +193,7 @@ class Tag(NamedTuple):
 
     name: str
     form: Literal["open", "close", "empty"]
-    attributes: dict[str, str]
+    attributes: _Attributes
     offset: int
 
     @property
@@ -264,13 +271,14 @@ def read_tag(text: str, start: int, note: _Note) -> tuple[Tag, int]:
         note("space", "white space after <", start)
     closing = text.startswith("/", position)
     match = _NAME.match(text, position + 1 if closing else position)
-    if match is None:
+    if not match:
         raise MalformedTagError("there is no tag name after <", start, _resume_after(text, start))
     name = match[0]
     attributes, position = _read_attributes(text, start, match.end(), name, note)
     form: Literal["open", "close", "empty"] = "close" if closing else "open"
     if text.startswith("/", position):
-        form, position = "empty", position + 1
+        form = "empty"
+        position = position + 1
     if closing and (attributes or form == "empty"):
         note("closing", "a closing tag with more than its name", start)
     return Tag(name, form, attributes, start), position + 1
@@ -281,7 +289,8 @@ def _resume_after(text: str, position: int) -> int:
 
     This is after its > or before the next <.
     """
-    closed, opened = text.find(">", position), text.find("<", position + 1)
+    closed = text.find(">", position)
+    opened = text.find("<", position + 1)
     if closed >= 0 and (opened < 0 or closed < opened):
         return closed + 1
     return opened if opened >= 0 else len(text)
@@ -297,9 +306,9 @@ def short(text: str) -> str:
 
 def _read_attributes(
     text: str, start: int, position: int, tag: str, note: _Note
-) -> tuple[dict[str, str], int]:
+) -> tuple[_Attributes, int]:
     """Return the attributes of a tag, and the offset of the > or /> that ends it."""
-    attributes: dict[str, str] = {}
+    attributes: _Attributes = {}
     while True:
         at = _skip_blank(text, position)
         if text.startswith((">", "/>"), at):
@@ -314,7 +323,7 @@ def _read_attributes(
 
 
 def _unclosed_quote(
-    text: str, start: int, tag: str, attributes: dict[str, str]
+    text: str, start: int, tag: str, attributes: _Attributes
 ) -> MalformedTagError | None:
     """Return the likelier error for a value that contains the next tag.
 
@@ -332,13 +341,14 @@ def _unclosed_quote(
 
 
 def _read_attribute(
-    text: str, start: int, position: int, tag: str, attributes: dict[str, str], note: _Note
+    text: str, start: int, position: int, tag: str, attributes: _Attributes, note: _Note
 ) -> int:
     """Add the attribute at this offset to the others; return the offset after it."""
     name = _NAME.match(text, position)
-    if name is None:
+    if not name:
         raise _misfit(text, start, position, tag)
-    shown, offset = f"{short(name[0])!r} in <{short(tag)}>", name.start()
+    shown = f"{short(name[0])!r} in <{short(tag)}>"
+    offset = name.start()
     at = _skip_blank(text, name.end())
     if not text.startswith("=", at):
         message = f"the attribute {short(name[0])!r} of <{short(tag)}> has no value"
@@ -393,10 +403,10 @@ def _misfit(text: str, start: int, at: int, name: str) -> MalformedTagError:
 # --- Documents
 
 # A declaration that XML parsers accept. TinyXML2 ignores what it says, and always reads UTF-8.
-_DECLARATION = re.compile(
+_DECLARATION = on_use(
     r"""xml\s+version\s*=\s*["']1\.[0-9]+["'](\s+encoding\s*=\s*["'](?i:utf-8|us-ascii)["'])?[^<>]*"""
 )
-_NAMESPACE = re.compile(r"xmlns:([^\s=]+)")
+_NAMESPACE = on_use(r"xmlns:([^\s=]+)")
 _MAX_DEPTH = 500  # TINYXML2_MAX_ELEMENT_DEPTH; the document itself is the first level
 _MAX_WRITTEN_DEPTH = 32  # urdfdom never looks deeper than robot/link/visual/geometry/box
 _MAX_ERRORS = 20

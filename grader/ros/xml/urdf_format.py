@@ -5,13 +5,16 @@ Each has its attributes, and the elements that may be in it.
 
 from collections.abc import Mapping
 from math import isfinite
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, get_args
+
+from grader.base.grouping import Strings
+from grader.base.records import Named
 
 JointType = Literal["fixed", "continuous", "revolute", "prismatic", "floating", "planar"]
-JOINT_TYPES: tuple[str, ...] = get_args(JointType)
+JOINT_TYPES: Strings = get_args(JointType)
 
 
-class _AttributeFormat(NamedTuple):
+class _AttributeFormat(Named):
     """The format of an attribute.
 
     It is the unit and the parts of its numbers (no parts: text), and what ROS 2 uses where it is
@@ -21,11 +24,11 @@ class _AttributeFormat(NamedTuple):
     """
 
     unit: str = ""
-    parts: tuple[str, ...] = ()
+    parts: Strings = ()
     default: str | None = None
 
 
-class _TagFormat(NamedTuple):
+class _TagFormat(Named):
     """The format of an element.
 
     It is its attributes in usual order, children (also needed, repeated ones), wrong names of
@@ -33,18 +36,20 @@ class _TagFormat(NamedTuple):
     """
 
     attributes: Mapping[str, _AttributeFormat] = {}
-    children: tuple[str, ...] = ()
-    needed: tuple[
-        str, ...
-    ] = ()  # of geometry one is needed, and of a joint that is revolute or prismatic also limit
-    repeated: tuple[str, ...] = ()
+    children: Strings = ()
+    # Of geometry one is needed, and of a joint that is revolute or prismatic also limit.
+    needed: Strings = ()
+    repeated: Strings = ()
     aliases: Mapping[str, str] = {}
 
 
-_REQUIRED, _OPTIONAL = _AttributeFormat(), _AttributeFormat(default="")
-_XYZ, _ONE = ("x", "y", "z"), ("",)
+_REQUIRED = _AttributeFormat()
+_OPTIONAL = _AttributeFormat(default="")
+_XYZ = ("x", "y", "z")
+_ONE = ("",)
 _LINK = _TagFormat({"link": _REQUIRED}, aliases={"name": "link", "joint": "link"})
-_POSITIVE, _MIXED = _AttributeFormat("kg m2", _ONE), _AttributeFormat("kg m2", _ONE)
+_POSITIVE = _AttributeFormat("kg m2", _ONE)
+_MIXED = _AttributeFormat("kg m2", _ONE)
 _END = _AttributeFormat("rad or m", _ONE, "0")
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 
@@ -166,7 +171,7 @@ ELSEWHERE = {
 # Views of the table.
 ATTRIBUTES = {name: frozenset(tag.attributes) for name, tag in TAGS.items()}
 CHILDREN = {name: tag.children for name, tag in TAGS.items() if tag.children}
-REQUIRED: dict[str, tuple[str, ...]] = {}
+REQUIRED: dict[str, Strings] = {}
 OWNERS: dict[str, list[str]] = {}
 for _name, _tag in TAGS.items():
     _required = [key for key, attribute in _tag.attributes.items() if attribute.default is None]

@@ -1,23 +1,26 @@
 """The rows of ros_gz_bridge: which topic it takes to which one, with their types."""
 
 import posixpath
-import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.launch.launch_model import StartedNode
 from grader.workspace.model.workspace import Workspace
 
 BRIDGE = "ros_gz_bridge"  # the package
-TO_ROS, TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
+PARAMETER_BRIDGE = (BRIDGE, "parameter_bridge")  # its program
+TO_ROS = "GZ_TO_ROS"
+TO_GAZEBO = "ROS_TO_GZ"
+_BOTH = "BIDIRECTIONAL"
 _DIRECTIONS = {"[": TO_ROS, "]": TO_GAZEBO, "@": _BOTH}
-_ARGUMENT = re.compile(r"(?P<topic>[^@\s]++)@(?P<ros>[\w/]++)(?P<direction>[@\[\]])(?P<gz>[\w.]++)")
-_OLDER_FORM = re.compile("^ignition[.]msgs(?=[.])")
+_ARGUMENT = on_use(r"(?P<topic>[^@\s]++)@(?P<ros>[\w/]++)(?P<direction>[@\[\]])(?P<gz>[\w./]++)")
+_OLDER_FORM = on_use("^ignition[.]msgs(?=[.])")
 
 
-class BridgeRow(NamedTuple):
+class BridgeRow(Named):
     """What a bridge takes from a topic on one side to one on the other.
 
     The names have no first slash.
@@ -48,15 +51,14 @@ class BridgeRow(NamedTuple):
 
 def bridge_rows(workspace: Workspace) -> Iterator[BridgeRow]:
     """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
-    for path, tree in workspace.installed.trees:
-        is_used = any(
-            posixpath.basename(path) in text for text in workspace.texts.searched_launch_texts()
+    for tree in workspace.installed.trees:
+        name = posixpath.basename(tree.source.path)
+        rows = [row for row in map(_row_in_yaml, tree.items) if row]
+        is_used = bool(rows) and any(
+            name in text for text in workspace.texts.searched_launch_texts()
         )
-        for item in tree.items:
-            row = _row_in_yaml(item, is_used=is_used)
-            if row is not None:
-                yield row
-    for _, node in workspace.launches.nodes:
+        yield from (row._replace(is_used=is_used) for row in rows)
+    for node in workspace.launches.nodes:
         if node.package == BRIDGE:
             yield from _rows_in_arguments(node)
 
@@ -66,17 +68,13 @@ def rows_of_bridge(workspace: Workspace, node: StartedNode) -> Iterator[BridgeRo
     yield from _rows_in_arguments(node)
     for given in node.parameters or ():
         file = given.values.get("config_file")
-        path = (
-            workspace.installed.find_source(file.value)
-            if file and isinstance(file.value, str)
-            else None
-        )
-        tree = workspace.installed.yaml.get(path or "")
-        items = tree.items if isinstance(tree, YamlNode) else ()
+        path = file.value if file and isinstance(file.value, str) else ""
+        tree = workspace.installed.tree_at(path)
+        items = tree.items if tree else ()
         workspace.charge(1 + len(items))
         for item in items:
-            row = _row_in_yaml(item, is_used=True)
-            if row is not None:
+            row = _row_in_yaml(item)
+            if row:
                 yield row
 
 
@@ -88,11 +86,9 @@ def are_rows_known(workspace: Workspace, node: StartedNode) -> bool:
         file = given.values.get("config_file")
         if given.unknown or given.path:
             return False
-        if file is not None:
-            path = (
-                workspace.installed.find_source(file.value) if isinstance(file.value, str) else ""
-            )
-            if not isinstance(workspace.installed.yaml.get(path or ""), YamlNode):
+        if file:
+            path = file.value if isinstance(file.value, str) else ""
+            if not workspace.installed.tree_at(path):
                 return False
     return node.namespace in ("", "/") and node.remaps is not None
 
@@ -100,8 +96,9 @@ def are_rows_known(workspace: Workspace, node: StartedNode) -> bool:
 def _rows_in_arguments(node: StartedNode) -> Iterator[BridgeRow]:
     for word in node.arguments or ():
         match = _ARGUMENT.fullmatch(word or "")
-        if match is not None:
-            topic, at = match["topic"].strip("/"), node.location
+        if match:
+            topic = match["topic"].strip("/")
+            at = node.location
             yield BridgeRow(
                 ros=topic,
                 gz=topic,
@@ -125,7 +122,7 @@ def _newer_gz_type(written: str) -> str:
     return _OLDER_FORM.sub("gz.msgs", written)
 
 
-class _RowSide(NamedTuple):
+class _RowSide(Named):
     """The topic of a row in ROS or in Gazebo, with its type."""
 
     topic: str
@@ -134,13 +131,14 @@ class _RowSide(NamedTuple):
     type_location: Location
 
 
-def _row_in_yaml(row: YamlNode, *, is_used: bool) -> BridgeRow | None:
-    """Return a row of a file; None where it has no topics or types, and is ignored."""
-    ros, gz = _side_of_row(row, "ros"), _side_of_row(row, "gz")
+def _row_in_yaml(row: YamlNode) -> BridgeRow | None:
+    """Return a row of a file that is used; None where it has no topics or types, and is ignored."""
+    ros = _side_of_row(row, "ros")
+    gz = _side_of_row(row, "gz")
     if ros is None or gz is None:
         return None
     direction = row.get("direction")
-    written = direction.text if direction is not None else None
+    written = direction.text if direction else None
     return BridgeRow(
         ros=ros.topic,
         gz=gz.topic,
@@ -151,8 +149,8 @@ def _row_in_yaml(row: YamlNode, *, is_used: bool) -> BridgeRow | None:
         ros_location=ros.location,
         ros_type_location=ros.type_location,
         gz_type_location=gz.type_location,
-        direction_location=direction.location if direction is not None else gz.location,
-        is_used=is_used,
+        direction_location=direction.location if direction else gz.location,
+        is_used=True,
     )
 
 

@@ -158,10 +158,8 @@ def _values_given(
         if declared.name is not None and declared.is_declared
     }
     package = workspace.find_package(node)
-    assert package is not None  # that has the code of the node
-    given = workspace.parameters.read_given(
-        package, node, workspace.code.find_name(node) or own_node.name or ""
-    )
+    assert package  # that has the code of the node
+    given = workspace.parameters.given_in_code(package, node, own_node.name)
     if given.unknown:
         return {}
     return {**values, **{name: given_value.value for name, given_value in given.values.items()}}
@@ -182,7 +180,7 @@ def _names(
         items = values.get(lists[0])
     if not isinstance(items, list | tuple):
         items = [_ANY]
-    names: list[str | None] = []
+    names = []
     for item in items[:_MAX_NAMES]:
         name = "".join(_make_text(part, node, values, item) for part in endpoint.parts)
         names.append(name if name.strip(f"{_ANY}/") else None)

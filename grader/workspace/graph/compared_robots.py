@@ -4,25 +4,25 @@ They are those that the file's launch files start, or those of packages that hav
 of the file. A file may name what another robot of the workspace has, and not mean it.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cached_property, lru_cache
-from typing import NamedTuple
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from functools import cache, cached_property, lru_cache
+from itertools import chain
 
+from grader.base.records import Named
 from grader.base.text import quoted
 from grader.ros.installation.places import share_parts
 from grader.ros.launch.launch_model import Launch
-from grader.ros.launch.node_parameters import list_controllers
 from grader.ros.package.finding import package_around
 from grader.ros.package.package import Package
 from grader.workspace.model.known_robots import KnownRobot
-from grader.workspace.model.launches import SPAWNERS
+from grader.workspace.model.launches import list_spawned
 from grader.workspace.model.workspace import Workspace
 
 # First words of names of packages that say nothing of the robot.
 _ANY_ROBOT = frozenset({"ros", "ros2", "robot", "simple", "test", "demo", "example"})
 
 
-class ComparedRobots(NamedTuple):
+class ComparedRobots(Named):
     """The robots with which the names in a file are compared.
 
     If they `are_started`, the launch files that give the file to nodes start these robots and no
@@ -70,9 +70,10 @@ class _RobotGroups:
         self._workspace = workspace
         self._known = workspace.robots.known
         self._is_single = len(self._known) == 1
-        self._started: list[tuple[KnownRobot, ...] | None] = []  # by each launch file
+        self._started = []  # by each launch file
         self._launches: dict[str, list[int]] = {}  # by the files that they give
-        self._together: list[set[str]] = []  # the packages of which each launch file has something
+        # The packages of which each launch file has something.
+        self._together = []
         for number, (package, launch) in enumerate(workspace.launches.roots):
             workspace.charge(1 + len(launch.nodes))
             self._started.append(self._find_robots(launch))
@@ -89,7 +90,7 @@ class _RobotGroups:
         """Return the robots for a parameter file."""
         launches = self._launches.get(path, [])
         giving = self._giving_in_gazebo(path)
-        robots: dict[str, KnownRobot] = {robot.path: robot for robot in giving}
+        robots = {robot.path: robot for robot in giving}
         are_known = bool(launches or giving)
         for number in launches:
             started = self._started[number]
@@ -116,32 +117,23 @@ class _RobotGroups:
     def _find_robots(self, launch: Launch) -> tuple[KnownRobot, ...] | None:
         """Return the robots that a launch file starts; None where not all are known."""
         by_path = {robot.path: robot for robot in self._known}
-        robots: dict[str, KnownRobot] = {}
+        robots = {}
         for named in launch.named("urdf"):
             path = self._workspace.installed.find_source(named.path) if named.path else None
-            if path not in by_path or len(self._list_arguments[named.path or ""]) > 1:
+            if (
+                path not in by_path
+                or len(self._workspace.launches.robot_arguments[named.path or ""]) > 1
+            ):
                 return None
             robots[path] = by_path[path]
         return None if launch.more or not robots else tuple(robots.values())
-
-    @cached_property
-    def _list_arguments(self) -> Mapping[str, set[tuple[tuple[str, str | None], ...]]]:
-        """The arguments of xacro under which launch files read robots, by the paths of these.
-
-        A robot is known under one of them only.
-        """
-        arguments: dict[str, set[tuple[tuple[str, str | None], ...]]] = {}
-        for _, launch in self._workspace.launches.roots:
-            for named in launch.named("urdf"):
-                arguments.setdefault(named.path or "", set()).add(named.arguments)
-        return arguments
 
     def _list_files(self, launch: Launch) -> Iterator[str]:
         """Yield the parameter files that the nodes and controllers of a launch file get."""
         installed = self._workspace.installed
         for node in launch.nodes:
             yield from self._workspace.parameters.files_given(node)
-            for controller in (list_controllers(node) or ()) if node.executable in SPAWNERS else ():
+            for controller in list_spawned(node):
                 for given in controller.parameters or ():
                     path = installed.find_source(given.path) if given.path else None
                     if path is not None:
@@ -149,7 +141,7 @@ class _RobotGroups:
 
     def _giving_in_gazebo(self, path: str) -> list[KnownRobot]:
         """Return the robots that give a file to the controller manager in Gazebo."""
-        giving: list[KnownRobot] = []
+        giving = []
         for robot, given in self._workspace.robots.files_in_gazebo:
             if self._workspace.installed.find_source(given.path) == path:
                 giving.append(robot)
@@ -160,28 +152,35 @@ class _RobotGroups:
 
     def _related_to(self, package: Package | None) -> Iterator[KnownRobot]:
         """Yield the robots of packages that have to do with another package."""
+        related = self._find_related(package.name) if package else frozenset()
         for robot, around in zip(self._known, self._robot_packages, strict=True):
-            if package is None or around is None or self._are_related(package.name, around.name):
+            if package is None or around is None or around.name in related:
                 yield robot
 
-    def _are_related(self, name: str, other: str) -> bool:
-        """Return whether two packages are one, or something says that they belong together.
+    @cached_property
+    def _find_related(self) -> Callable[[str], frozenset[str]]:
+        """The packages that have to do with one, searched once for each.
 
-        One depends on the other, a launch file has something of both, a package with launch files
-        depends on both, or their names begin with the same word.
+        The other one depends on it or the reverse, a launch file has something of both, a package
+        with launch files depends on both, or their names begin with the same word.
         """
-        below = self._dependencies
-        if name == other or other in below[name] or name in below[other]:
-            return True
-        word = name.partition("_")[0]
-        if word == other.partition("_")[0] and word not in _ANY_ROBOT:
-            return True
-        if any({name, other} <= together for together in self._together):
-            return True
+        groups = list(self._together)
         for package in self._workspace.packages:
-            if package.launch_files and {name, other} <= below[package.name]:
-                return True
-        return False
+            if package.launch_files:
+                groups.append({*self._dependencies[package.name]})
+        by_word: dict[str, set[str]] = {}
+        for name in self._dependencies:
+            by_word.setdefault(name.partition("_")[0], set()).add(name)
+        groups += [names for word, names in by_word.items() if word not in _ANY_ROBOT]
+        groups_by_name: dict[str, list[Collection[str]]] = {}
+        for name, below in self._dependencies.items():
+            groups_by_name.setdefault(name, []).append({name, *below})
+            for other in below:
+                groups_by_name.setdefault(other, []).append((name,))
+        for group in groups:
+            for name in group:
+                groups_by_name.setdefault(name, []).append(group)
+        return cache(lambda name: frozenset(chain.from_iterable(groups_by_name[name])))
 
 
 def _list_packages(launch: Launch) -> Iterator[str]:
@@ -197,10 +196,11 @@ def _list_packages(launch: Launch) -> Iterator[str]:
 def _names_below(package: Package, packages: Sequence[Package]) -> frozenset[str]:
     """Return the packages of a workspace on which one depends, also by way of others."""
     by_name = {each.name: each for each in packages}
-    waiting, names = [package], set[str]()
+    waiting = [package]
+    names = set()
     while waiting:
         manifest = waiting.pop().manifest
-        for name in manifest.dependencies if manifest is not None else ():
+        for name in manifest.dependencies if manifest else ():
             if name in by_name and name not in names:
                 names.add(name)
                 waiting.append(by_name[name])

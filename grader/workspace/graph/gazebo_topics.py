@@ -1,15 +1,16 @@
 """The topics of sensors and systems of Gazebo, as robots, models and worlds name them."""
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
+from grader.ros.xml.elements import first_text
 from grader.ros.xml.parsing import Element
 from grader.workspace.model.workspace import Workspace
 
 
-class GazeboTopic(NamedTuple):
+class GazeboTopic(Named):
     """A topic of a sensor or a system, and the last word of the type of its messages.
 
     The topic has no first slash.
@@ -39,7 +40,7 @@ def gazebo_topics(workspace: Workspace) -> Iterator[GazeboTopic]:
 
 
 def _plain_topic(element: Element) -> str:
-    return (element.text or "").strip().strip("/")
+    return first_text(element).strip("/")
 
 
 def sensor_topics(sensor: Element, element: Element) -> Iterator[tuple[str, str]]:
@@ -47,8 +48,9 @@ def sensor_topics(sensor: Element, element: Element) -> Iterator[tuple[str, str]
 
     The type of the sensor is a known one.
     """
-    types, name = gazebo().sensor.get(sensor.get("type", "")), _plain_topic(element)
-    if types is None or not name:
+    types = gazebo().sensor.get(sensor.get("type", ""))
+    name = _plain_topic(element)
+    if not types or not name:
         return
     if types.topic:
         yield name, types.topic
@@ -63,6 +65,19 @@ def sensor_topics(sensor: Element, element: Element) -> Iterator[tuple[str, str]
 def name_system(plugin: Element) -> str:
     """Return the name of the class of a system, such as DiffDrive."""
     return plugin.get("name", "").rpartition("::")[2]
+
+
+def elements_in(
+    workspace: Workspace, tag: str
+) -> Iterator[tuple[Element, Callable[[Element], Location]]]:
+    """Yield the elements of a tag in robots, models and worlds, with where these are written."""
+    for root, place in roots(workspace):
+        yield from ((element, place) for element in root.iter(tag))
+
+
+def list_systems(workspace: Workspace) -> set[str]:
+    """Return the systems that robots, models and worlds load."""
+    return {name_system(plugin) for plugin, _ in elements_in(workspace, "plugin")}
 
 
 def roots(workspace: Workspace) -> Iterator[tuple[Element, Callable[[Element], Location]]]:

@@ -4,10 +4,10 @@ This is what `ros2 node list`, `param dump`, `topic info --verbose` and `view_fr
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TypeVar
 
+from grader.base.records import Record
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.nodes.node_facts import EndpointKind
 from grader.workspace.graph.bridge_rows import BridgeRow, bridge_rows
@@ -25,8 +25,7 @@ _ENDS_A_PART = 16  # that are searched for those of a kind
 _READ: tuple[EndSource, ...] = ("code", "controller")
 
 
-@dataclass(frozen=True, eq=False)
-class Graph:
+class Graph(Record):
     """What runs after each launch file of a workspace is launched on its own.
 
     `make_graph` makes it once; the rules of topics, services, messages and transforms ask it.
@@ -85,13 +84,12 @@ class Graph:
     @cached_property
     def names_read(self) -> set[str]:
         """The topics to which code subscribes under the names that it writes, if it is started."""
-        names: set[str] = set()
-        for code in self.workspace.code.by_package.values():
-            for node in code.nodes:
-                self.workspace.charge(1 + len(node.endpoints))
-                for endpoint in node.endpoints:
-                    if endpoint.kind == "subscription" and endpoint.name is not None:
-                        names.add(f"/{endpoint.name.removeprefix('/')}")
+        names = set()
+        for node in self.workspace.code.nodes:
+            self.workspace.charge(1 + len(node.endpoints))
+            for endpoint in node.endpoints:
+                if endpoint.kind == "subscription" and endpoint.name is not None:
+                    names.add(f"/{endpoint.name.removeprefix('/')}")
         return names
 
     def pairs(self, asking: Iterable[End], offering: Iterable[End]) -> Iterator[tuple[End, End]]:
@@ -124,13 +122,13 @@ class Graph:
 
     def given(self, parameter: str) -> Iterator[tuple[StartedNode, ParameterValue]]:
         """Yield the nodes that are given a parameter of a name, each with its value."""
-        for package, node in self.workspace.launches.nodes:
+        for package, node in self.workspace.launches.placed_nodes:
             value = self.workspace.parameters.given_to(package, node).values.get(parameter)
-            if value is not None:
+            if value:
                 yield node, value
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=3)  # as of facts
 def make_graph(workspace: Workspace) -> Graph:
     """Return the graph of a workspace, which is made once."""
     return Graph(workspace)

@@ -3,11 +3,15 @@
 import hashlib
 from collections import defaultdict
 
+from grader.base.grouping import Strings
 from grader.workspace.graph.launch_graph import GraphEnd, GraphNode, LaunchGraph
 
 _ROUNDS = 4  # in which a part of the graph gets to know its neighbours
 _LEAST_ENDS = 6  # of own code: smaller graphs are often equal
-_Parts = dict[tuple[str, ...], str]  # a node by its number, or a topic by its name: what it is
+_Parts = dict[Strings, str]  # a node by its number, or a topic by its name: what it is
+
+
+_Neighbours = dict[Strings, list[tuple[str, Strings]]]
 
 
 def graph_form(graph: LaunchGraph) -> str:
@@ -20,7 +24,7 @@ def graph_form(graph: LaunchGraph) -> str:
     if len(own_ends) < _LEAST_ENDS:
         return ""
     parts: _Parts = {}
-    neighbours: dict[tuple[str, ...], list[tuple[str, tuple[str, ...]]]] = defaultdict(list)
+    neighbours: _Neighbours = defaultdict(list)
     for number, node in enumerate(graph.nodes):
         place = ("node", str(number))
         is_own = any(_is_of_code(node, end) for end in node.ends)
@@ -41,11 +45,9 @@ def _is_of_code(node: GraphNode, end: GraphEnd) -> bool:
     return node.kind != "controller" and end.location != node.location
 
 
-def _refined(
-    parts: _Parts, neighbours: dict[tuple[str, ...], list[tuple[str, tuple[str, ...]]]]
-) -> _Parts:
+def _refined(parts: _Parts, neighbours: _Neighbours) -> _Parts:
     """Return what each part of a graph is, together with what its neighbours are."""
-    refined: _Parts = {}
+    refined = {}
     for place, what in parts.items():
         around = sorted(f"{look} {parts[other]}" for look, other in neighbours[place])
         refined[place] = _hash_text("\n".join([what, *around]))

@@ -20,7 +20,7 @@ def included_nodes(workspace: Workspace, package: Package, launch: Launch) -> It
     release = last_release(workspace)
     for passed in launch.passed:
         owner, file = _included_file(passed)
-        if passed.when is False or package.find(owner) is not None:
+        if passed.when is False or package.find(owner):
             continue
         for included in nodes_of_launch_file(owner, file, release):
             of_package, _, executable = included.node.partition("/")
@@ -40,7 +40,7 @@ def _remappings_passed(
 ) -> tuple[tuple[str, str], ...] | None:
     """Return the remappings of a node; None if an include passes a name that is not known."""
     values = dict(passed.values)
-    remaps: list[tuple[str, str]] = []
+    remaps = []
     for name, default in included.remappings.items():
         to = values.get(included.arguments.get(name, ""), default)
         if to is None:
@@ -63,7 +63,7 @@ def _parameters_passed(
 
 def unread_includes(workspace: Workspace, launch: Launch) -> Iterator[Unread]:
     """Yield the included launch files of known packages of which it is not known what they open."""
-    own_packages = {package.name for package in workspace.packages}
+    own_packages = workspace.own_packages
     for passed in launch.passed:
         package, file = _included_file(passed)
         is_known = launch_file_is_known(package, file) or file not in package_row(package).launch

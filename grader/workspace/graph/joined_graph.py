@@ -83,7 +83,7 @@ class JoinedGraph(NamedTuple):
 
     def ends(self, kinds: Collection[EndpointKind], name: str) -> list[PlacedEnd]:
         """Return the ends of these kinds that have a name, or may have it."""
-        ends: list[PlacedEnd] = []
+        ends = []
         for node in self.graph.nodes:
             for end in node.ends:
                 if end.kind in kinds and is_named(end.name, name):
@@ -128,7 +128,7 @@ def join_launches(
 ) -> JoinedGraph:
     """Return what runs after launch files are launched together, without some programs."""
     launches = tuple(launched_alone(workspace, path) for path in paths)
-    nodes: list[GraphNode] = []
+    nodes = []
     unread: list[Unread] = []
     for each in launches:
         graph = started_graph(*each)

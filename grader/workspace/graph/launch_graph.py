@@ -8,6 +8,9 @@ from collections.abc import Iterator, Mapping
 from itertools import islice
 from typing import Any, Literal, NamedTuple, get_args
 
+from grader.base.errors import NotDecided
+from grader.base.grouping import Strings
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.transforms import Transform
 from grader.ros.known.end_rows import OnlyMore
@@ -18,22 +21,28 @@ GRAPH_NODE_KINDS: tuple[GraphNodeKind, ...] = get_args(GraphNodeKind)
 _ConnectionKind = Literal["topic", "service", "action"]
 _TransformSource = Literal["robot", "static", "code", "program", "controller", "Gazebo"]
 CONNECTION_KINDS: tuple[_ConnectionKind, ...] = get_args(_ConnectionKind)
-_OFFERS: Mapping[EndpointKind, EndpointKind] = {
+OFFERS: Mapping[EndpointKind, EndpointKind] = {
     "publisher": "subscription",
     "service": "client",
     "action server": "action client",
 }
 OPPOSITES: Mapping[EndpointKind, EndpointKind] = {
-    **_OFFERS,
-    **{asking: offering for offering, asking in _OFFERS.items()},
+    **OFFERS,
+    **{asking: offering for offering, asking in OFFERS.items()},
 }
-_CARRIES: Mapping[EndpointKind, _ConnectionKind] = {
+CARRIES: Mapping[EndpointKind, _ConnectionKind] = {
     "publisher": "topic",
     "subscription": "topic",
     "service": "service",
     "client": "service",
     "action server": "action",
     "action client": "action",
+}
+# Of what is at the other end of a topic, by the words of rubrics: rmw/qos_profiles.h.
+_QUALITIES: Mapping[str, Qos] = {
+    "default": Qos(10, "reliable", "volatile"),
+    "sensor_data": Qos(5, "best_effort", "volatile"),
+    "transient_local": Qos(1, "reliable", "transient_local"),
 }
 PART_UNKNOWN = "*"  # in a name
 _MAX_CONNECTIONS = 10_000
@@ -56,15 +65,15 @@ class GraphEnd(NamedTuple):
     @property
     def carrier(self) -> _ConnectionKind:
         """What it is an end of."""
-        return _CARRIES[self.kind]
+        return CARRIES[self.kind]
 
     @property
     def is_offered(self) -> bool:
         """Whether it sends or serves, so that arrows lead away from it."""
-        return self.kind in _OFFERS
+        return self.kind in OFFERS
 
 
-class GivenValue(NamedTuple):
+class GivenValue(Named):
     """A parameter that a node is given, and that differs from its default, or has none."""
 
     name: str
@@ -72,7 +81,7 @@ class GivenValue(NamedTuple):
     location: Location
 
 
-class GraphNode(NamedTuple):
+class GraphNode(Named):
     """A node that runs, or may run, after a launch file is launched."""
 
     name: str  # in full: /left/driver; empty where it is not known
@@ -98,7 +107,7 @@ class GraphNode(NamedTuple):
         return self.name.rpartition("/")[0] or "/"
 
 
-class EndedProcess(NamedTuple):
+class EndedProcess(Named):
     """A program of a launch that is no node, or ends when it has done its work."""
 
     program: str
@@ -122,22 +131,29 @@ class GraphTransform(NamedTuple):
     is_static: bool = False
     pose: Transform | None = None  # T_parent_child, where it never changes and is known
     # The topics of joint states without which robot_state_publisher does not publish it.
-    needs: tuple[str, ...] = ()
+    needs: Strings = ()
+    named_at: Location | None = None  # where a parameter has the name of the child
 
     @property
     def is_known(self) -> bool:
         """Whether both frames are known."""
         return bool(self.parent and self.child)
 
+    @property
+    def words(self) -> str:
+        """What publishes it, for people."""
+        words = f"static, {self.by}" if self.is_static else self.by
+        return words if self.is_certain else f"{words} (not certain)"
 
-class Unread(NamedTuple):
+
+class Unread(Named):
     """What may start more, or is not read, and where."""
 
     reason: str
     location: Location
 
 
-class LaunchGraph(NamedTuple):
+class LaunchGraph(Named):
     """What runs after one launch file is launched on its own, in the order of the file."""
 
     path: str  # of the launch file
@@ -149,7 +165,7 @@ class LaunchGraph(NamedTuple):
     arguments: tuple[tuple[str, str], ...] = ()  # that it declares, with their values
 
 
-class Connection(NamedTuple):
+class Connection(Named):
     """Two ends of one name: the numbers of the nodes, and their ends.
 
     Messages go from the first one to the second; of a service and an action, the first one serves.
@@ -204,12 +220,38 @@ def fault_between(offered: GraphEnd, asked: GraphEnd) -> str:
     """Return why two ends do not connect; empty if they do, as far as is known."""
     if offered.type and asked.type and offered.type != asked.type:
         return f"{offered.type} is not {asked.type}"
-    given, wanted = offered.qos, asked.qos
+    return _fault_of_quality(offered.qos, asked.qos)
+
+
+def _fault_of_quality(given: Qos, wanted: Qos) -> str:
+    """Return why a quality of service is not what is asked for; empty if it is, or is not known."""
     if given.reliability == "best_effort" and wanted.reliability == "reliable":
         return "best effort is offered, reliable is asked for"
     if given.durability == "volatile" and wanted.durability == "transient_local":
         return "volatile is offered, transient local is asked for"
     return ""
+
+
+def fault_with_others(kind: EndpointKind, qos: Qos, others: str) -> str:
+    """Return why an end of a topic does not connect to one with a quality that a rubric names.
+
+    Raises NotDecided where the quality of the end is not known.
+    """
+    if None in (qos.reliability, qos.durability):
+        raise NotDecided("cannot determine statically which quality of service a topic has")
+    pair = (qos, _QUALITIES[others]) if kind == "publisher" else (_QUALITIES[others], qos)
+    return _fault_of_quality(*pair)
+
+
+def connected_part(graph: LaunchGraph) -> LaunchGraph:
+    """Return a graph with nothing but the ends that have another one, and the nodes of these."""
+    names = {(end.kind, end.name) for node in graph.nodes for end in node.ends}
+    nodes = []
+    for node in graph.nodes:
+        ends = [end for end in node.ends if (OPPOSITES[end.kind], end.name) in names]
+        if ends:
+            nodes.append(node._replace(ends=tuple(ends)))
+    return graph._replace(nodes=tuple(nodes))
 
 
 def unconnected_ends(graph: LaunchGraph) -> list[GraphEnd]:

@@ -13,12 +13,12 @@ def launch_files(workspace: Workspace) -> list[str]:
     Of these, the one that includes most files is the first, then the one that starts most nodes.
     """
     roots = sorted(
-        (launch for _, launch in workspace.launches.roots),
+        (launch for launch in workspace.launches.outermost),
         key=lambda launch: (-included_files(launch), -len(launch.nodes), launch.source.path),
     )
     paths = [launch.source.path for launch in roots]
-    others = sorted(launch.source.path for _, _, launch in workspace.launches.files)
-    return [*dict.fromkeys((*paths, *others))]
+    others = sorted(launch.source.path for launch in workspace.launches.every)
+    return list(dict.fromkeys(paths + others))
 
 
 def launch_graph(workspace: Workspace, path: str) -> LaunchGraph:
@@ -28,7 +28,7 @@ def launch_graph(workspace: Workspace, path: str) -> LaunchGraph:
 
 def launched_alone(workspace: Workspace, path: str) -> tuple[Workspace, int]:
     """Return a workspace in which a launch file is among the roots, and its number there."""
-    roots = [launch.source.path for _, launch in workspace.launches.roots]
+    roots = [launch.source.path for launch in workspace.launches.outermost]
     if path in roots:
         return workspace, roots.index(path)
     return replace(workspace, launched=path), 0

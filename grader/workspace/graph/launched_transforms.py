@@ -9,7 +9,7 @@ from grader.ros.known.end_rows import opened_ends
 from grader.ros.known.package_rows import find_transforms, package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.static_transforms import STATIC_PUBLISHER
-from grader.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
+from grader.workspace.graph.bridge_rows import BRIDGE
 from grader.workspace.graph.code_ends import transforms_sent
 from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.launch_graph import (
@@ -22,15 +22,14 @@ from grader.workspace.graph.transform_edges import (
     edges_in,
     frames_of_system,
     publishes_as_named,
+    topics_of_transforms,
 )
-from grader.workspace.model.own_code import CPP_ENDINGS
+from grader.workspace.model.text_files import CODE_ENDINGS
 from grader.workspace.model.workspace import Workspace
 
-_TF = "/tf"
 _SENDING = ("sendTransform", "TFMessage")
 _SIMULATORS = ("gazebo_ros", "gazebo_plugins")  # whose plug-ins publish what their elements say
 _PUBLISHING = ("tf2_ros", "robot_state_publisher")  # also as components
-_PROGRAM_ENDINGS = (".py", *CPP_ENDINGS)
 
 
 def transforms_in(
@@ -41,7 +40,7 @@ def transforms_in(
     `number` is that of the launch file among the roots; `without` has the names of programs that
     cannot run. Raises NotDecided.
     """
-    _, launch = workspace.launches.roots[number]
+    launch = workspace.launches.outermost[number]
     not_started = {node.location for node in launch.nodes if node.when is False}
     for edge in edges_in(workspace, number):
         if edge.source != "code" and edge.location not in not_started:
@@ -71,7 +70,7 @@ def _bridged_by_default(workspace: Workspace, node: StartedNode) -> Iterator[Gra
 
     It is /model/NAME/tf, with the name of the model, which is that of the robot by default.
     """
-    topics = _topics_of_transforms(workspace, node)
+    topics = topics_of_transforms(workspace, node) if node.package == BRIDGE else ()
     for root, place in roots(workspace) if topics else ():
         for plugin in root.iter("plugin"):
             frames = frames_of_system(plugin) if plugin.find("tf_topic") is None else None
@@ -81,17 +80,9 @@ def _bridged_by_default(workspace: Workspace, node: StartedNode) -> Iterator[Gra
                 yield GraphTransform(*frames, "Gazebo", is_certain, by, place(plugin))
 
 
-def _topics_of_transforms(workspace: Workspace, node: StartedNode) -> set[str]:
-    """Return the topics of Gazebo whose transforms a bridge publishes, without their slash."""
-    if node.package != BRIDGE:
-        return set()
-    rows = rows_of_bridge(workspace, node)
-    return {row.gz for row in rows if row.is_published and node.topic(f"/{row.ros}") == _TF}
-
-
 def is_for_transforms(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether a program is known to publish transforms, or does nothing else."""
-    program = (node.package, node.executable)
+    program = node.program
     if program == STATIC_PUBLISHER or find_transforms("/".join(program)):
         return True
     own_nodes = workspace.code.find_nodes(node)
@@ -105,7 +96,7 @@ def unread_transforms(
 
     `graph` is that of the launch file, without programs that cannot run.
     """
-    _, launch = workspace.launches.roots[number]
+    launch = workspace.launches.outermost[number]
     yield from graph.unread
     for transform in transforms_in(workspace, number, without):
         if not (transform.parent and transform.child):
@@ -116,10 +107,10 @@ def unread_transforms(
         reason = ""
         if node.when is False or node.name in without:
             continue
-        if workspace.find_package(node) is not None:
+        if workspace.find_package(node):
             own_programs.add(node.name)
             reason = _why_own_is_unread(workspace, node)
-        elif _topics_of_transforms(workspace, node):
+        elif node.package == BRIDGE and topics_of_transforms(workspace, node):
             reason = "the transforms of Gazebo are not read"
         if reason:
             yield Unread(reason, node.location)
@@ -142,10 +133,10 @@ def _why_own_is_unread(workspace: Workspace, node: StartedNode) -> str:
         if facts.doubts:
             return facts.doubts[0].reason
     package = workspace.find_package(node)
-    assert package is not None  # that has the code
+    assert package  # that has the code
     code = workspace.code.by_package[package.name]
     read = {sent.location.path for facts in code.nodes for sent in facts.transforms}
-    for source in workspace.texts.read_sources(package, _PROGRAM_ENDINGS):
+    for source in workspace.texts.read_sources(package, CODE_ENDINGS):
         if source.path not in read and any(word in source.text for word in _SENDING):
             return f"what {source.path} publishes is not known"
     return ""
@@ -171,4 +162,4 @@ def _may_publish_others(node: GraphNode) -> bool:
         return True
     if node.kind == "controller":
         return bool(node.opens_more)
-    return "frames" not in package_row(package).without and opened_ends(package, program) is None
+    return "frames" not in package_row(package).without and not opened_ends(package, program)

@@ -12,7 +12,7 @@ def manual_ends(ends: Sequence[GraphEnd]) -> list[tuple[GraphEnd, list[str]]]:
 
     Each is with these programs, as `package/program`.
     """
-    brought: list[tuple[GraphEnd, list[str]]] = []
+    brought = []
     for end in ends:
         programs = [name for name, row in manual_programs() if _connects(row, end)]
         if programs:

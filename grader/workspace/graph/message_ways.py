@@ -7,8 +7,9 @@ nodes of one process share what they receive.
 
 from collections.abc import Collection, Iterator, Sequence
 from fnmatch import fnmatchcase
-from typing import NamedTuple
 
+from grader.base.names import last_part
+from grader.base.records import Named
 from grader.ros.nodes.node_facts import EndpointKind
 from grader.workspace.graph.launch_graph import (
     OPPOSITES,
@@ -19,13 +20,15 @@ from grader.workspace.graph.launch_graph import (
     fault_between,
 )
 
+_Doubted = Iterator[tuple[int, str]]  # the numbers of nodes, each with a doubt
+
 _SENDING = ("publisher", "client", "action client")
 # What publishes only what a person asks for.
 _BY_PERSON = frozenset({"rviz2"})
 _BRIDGES = ("ros_gz_bridge", "ros_ign_bridge", "ros_gz_image")
 
 
-class MessageWay(NamedTuple):
+class MessageWay(Named):
     """A way of messages from a topic to another one: the numbers of the nodes in their order.
 
     If it does not arrive, the nodes are those that messages certainly reach.
@@ -56,7 +59,8 @@ def why_end_is_open(node: GraphNode, end: GraphEnd) -> str:
     """Return why it is not certain that a node has an end, for a message; empty if it is."""
     if node.doubt:
         return f"{node.label}: {node.doubt}"
-    return f"a {end.kind} of {node.label}: {end.doubt}" if end.doubt else ""
+    article = "an" if "action" in end.kind else "a"
+    return f"{article} {end.kind} of {node.label}: {end.doubt}" if end.doubt else ""
 
 
 def why_more(node: GraphNode) -> str:
@@ -64,7 +68,7 @@ def why_more(node: GraphNode) -> str:
     return f"{node.label} may open more: {node.opens_more}"
 
 
-class _NumberedEnd(NamedTuple):
+class _NumberedEnd(Named):
     """An end of the node with a number."""
 
     node: int
@@ -77,10 +81,10 @@ class _WaySearch:
     def __init__(self, graph: LaunchGraph, *, is_certain: bool) -> None:
         self._nodes = graph.nodes
         self._is_certain = is_certain
-        self._ends: list[Sequence[GraphEnd]] = []
+        self._ends = []
         self._by_name: dict[tuple[str, str], list[_NumberedEnd]] = {}
-        self._in_part: list[_NumberedEnd] = []  # the ends of whose names a part is not known
-        self._reading_more: list[int] = []
+        self._in_part = []  # the ends of whose names a part is not known
+        self._reading_more = []
         self._held_by = _processes_by_held(graph.nodes)
         self._in_process: dict[int | None, list[int]] = {}
         for number, node in enumerate(graph.nodes):
@@ -99,9 +103,9 @@ class _WaySearch:
 
     def way(self, start: str, end: str) -> MessageWay:
         """Return the shortest way between two topics, or what messages of the first one reach."""
-        doubts: dict[int, str] = {}
+        doubts = {}
         before: dict[int, int] = {}
-        waiting: list[int] = []
+        waiting = []
         for number, doubt in self._readers(start):
             if number not in doubts:
                 doubts[number] = doubt
@@ -117,7 +121,7 @@ class _WaySearch:
                     waiting.append(other)
         return MessageWay(tuple(waiting), arrives=False)
 
-    def _readers(self, topic: str) -> Iterator[tuple[int, str]]:
+    def _readers(self, topic: str) -> _Doubted:
         """Yield the nodes that read a topic, without those that connect to no publisher of it."""
         sent = [
             placed.end
@@ -134,7 +138,7 @@ class _WaySearch:
 
     def _named(self, kind: str, name: str) -> list[_NumberedEnd]:
         """Return the ends of a kind that have a name, first those that certainly have it."""
-        placed = [*self._by_name.get((kind, name), ())]
+        placed = list(self._by_name.get((kind, name), ()))
         for other in self._in_part:
             if other.end.kind == kind and fnmatchcase(name, other.end.name):
                 placed.append(other)
@@ -158,11 +162,11 @@ class _WaySearch:
     def _carries(self, number: int) -> bool:
         """Return whether what a node receives may go on in what it sends."""
         node = self._nodes[number]
-        if node.program.rpartition("/")[2] in _BY_PERSON:
+        if last_part(node.program) in _BY_PERSON:
             return False
         return not (self._is_certain and node.program.startswith(_BRIDGES))
 
-    def _next_to(self, number: int) -> Iterator[tuple[int, str]]:
+    def _next_to(self, number: int) -> _Doubted:
         """Yield the nodes that get what a node sends, each with why that is not certain."""
         node = self._nodes[number]
         for end in self._ends[number]:
@@ -183,7 +187,7 @@ class _WaySearch:
                     yield other, f"what {node.label} shares with {label} is not known"
             yield from self._possibly_next_to(node)
 
-    def _possibly_next_to(self, node: GraphNode) -> Iterator[tuple[int, str]]:
+    def _possibly_next_to(self, node: GraphNode) -> _Doubted:
         """Yield the nodes that may get what a node sends, as one of both may open more."""
         if _may_send_more(node):
             for other, ends in enumerate(self._ends):
@@ -202,7 +206,7 @@ def _processes_by_held(nodes: Sequence[GraphNode]) -> dict[int, list[int]]:
     numbers: dict[str, list[int]] = {}
     for number, node in enumerate(nodes):
         numbers.setdefault(node.label, []).append(number)
-    held: dict[int, list[int]] = {}
+    held = {}
     for number, node in enumerate(nodes):
         if node.inside and node.kind == "program":
             held[number] = numbers.get(node.inside, [])

@@ -4,8 +4,8 @@ The nodes are those of own code, controllers, bridges and well-known programs.
 """
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.ros.known.package_rows import CommandRow, ProgramRow, program_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.nodes.node_facts import Endpoint, EndpointKind
@@ -19,7 +19,7 @@ from grader.workspace.model.workspace import Workspace
 _IMAGE_BRIDGES = "ros_gz_image"  # whose topics are those of its arguments
 
 
-class KnownProgram(NamedTuple):
+class KnownProgram(Named):
     """A well-known program in a launch file of a package, and what is known of its topics."""
 
     launch: int
@@ -33,15 +33,15 @@ def programs_in(workspace: Workspace) -> Iterator[KnownProgram]:
     for launch, (package, file) in enumerate(workspace.launches.roots):
         workspace.charge(1 + len(file.nodes))
         for node in file.nodes:
-            if node.when is True:
-                row = program_row(node.package, node.executable)
+            if node.when:
+                row = program_row(*node.program)
                 yield KnownProgram(launch, package, node, row)
 
 
 def deciding_parameter(end: End) -> str | None:
     """Return the parameter of a well-known program that decides the type of an end."""
-    command = program_row(end.node.package, end.node.executable).command
-    if command is None or end.node.topic(command.topic) != end.name:
+    command = program_row(*end.node.program).command
+    if not command or end.node.topic(command.topic) != end.name:
         return None
     return command.parameter
 
@@ -92,12 +92,12 @@ def _topics_of_program(
     workspace: Workspace, package: Package, node: StartedNode
 ) -> Iterator[tuple[EndpointKind, str, str]]:
     """Yield kind, name and type of the topics that a well-known program opens."""
-    row = program_row(node.package, node.executable)
+    row = program_row(*node.program)
     for name, message in row.subscriptions.items():
         yield "subscription", name, message
     for name, message in row.publishers.items():
         yield "publisher", name, message
-    if row.command is not None:
+    if row.command:
         type_of_command = _type_by_parameter(workspace, package, node, row.command)
         if type_of_command is not None:
             yield "publisher", row.command.topic, type_of_command
@@ -114,7 +114,7 @@ def _type_by_parameter(
     if parameters.unknown:
         return None
     given = parameters.values.get(row.parameter)
-    if given is None:
+    if not given:
         return row.type
     if isinstance(given.value, Unknown):
         return None

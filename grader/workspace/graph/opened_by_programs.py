@@ -87,7 +87,7 @@ def _find_type(end: VaryingEnd, parameter: str, given: NodeParameters) -> str:
         return end.type
     above = parameter.rpartition(".")[0]
     row = given.values.get(f"{above}.{end.type_parameter}")
-    if row is None or not isinstance(row.value, str):
+    if not row or not isinstance(row.value, str):
         return ""
     return f"{end.type}{row.value}"
 
@@ -107,7 +107,7 @@ def _doubt_of_condition(
 ) -> str | None:
     """Return why it is not certain that a condition holds; empty if it does, None if not."""
     row = given.values.get(name)
-    if row is None:
+    if not row:
         if given.unknown:
             return given.unknown
         return "" if holds(None, value) else None

@@ -7,6 +7,7 @@ from grader.ros.known.end_rows import OpenedEnds, opened_ends
 from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
+from grader.ros.xml.elements import first_text
 from grader.ros.xml.parsing import Element
 from grader.workspace.graph.launch_graph import GraphNode
 from grader.workspace.graph.opened_by_programs import ends_of_row
@@ -32,7 +33,7 @@ def plugin_nodes(
         for plugin in robot.root.iter("plugin"):
             file = plugin.get("filename", "").removeprefix("lib").removesuffix(".so")
             row = opened_ends(_PACKAGE, file)
-            if row is not None:
+            if row:
                 yield _plugin_node(plugin, file, row, robot.place, release, doubt)
 
 
@@ -55,12 +56,12 @@ def _plugin_node(
         node_name=plugin.get("name", ""),
         remaps=tuple(_list_remaps(plugin)),
     )
-    values: dict[str, ParameterValue] = {}
+    values = {}
     for child in plugin.iterchildren("*"):
-        text = (child.text or "").strip()
+        text = first_text(child)
         values[child.tag] = ParameterValue(_SWITCHES.get(text.lower(), text), location)
     camera = _text(plugin, "camera_name")
-    publishers: dict[str, str] = {}
+    publishers = {}
     for written, message in row.publishers.items():
         if camera or _CAMERA not in written:
             publishers[written.replace(_CAMERA, camera)] = message
@@ -79,6 +80,6 @@ def _text(plugin: Element, path: str) -> str:
 def _list_remaps(plugin: Element) -> Iterator[tuple[str, str]]:
     """Yield the remappings of a plug-in: ~/out:=scan."""
     for element in plugin.iterfind("ros/remapping"):
-        name, _, to = (element.text or "").strip().partition(":=")
+        name, _, to = first_text(element).partition(":=")
         if to:
             yield name, to

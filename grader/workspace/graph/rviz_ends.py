@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
+from grader.base.names import last_part
 from grader.ros.config.rviz import RvizFile
 from grader.ros.config.yaml_nodes import read_yaml
 from grader.ros.known.package_tables import display_types
@@ -16,23 +17,29 @@ _TOPICS_OF_DISPLAYS = {
     "Description Topic": "std_msgs.msg.String",
     "Update Topic": "map_msgs.msg.OccupancyGridUpdate",
 }
-_TOOLS = {
+# The types that tools publish, by their classes.
+TOOL_TYPES = {
     "SetInitialPose": "geometry_msgs.msg.PoseWithCovarianceStamped",
     "SetGoal": "geometry_msgs.msg.PoseStamped",
     "PublishPoint": "geometry_msgs.msg.PointStamped",
 }
 
 
+def list_rviz_files(workspace: Workspace) -> Sequence[RvizFile]:
+    """Return the RViz files of the packages."""
+    return [package.rviz(path) for package in workspace.packages for path in package.rviz_files]
+
+
 def rviz_files(workspace: Workspace, launch: Launch) -> Sequence[RvizFile]:
     """Return the files that a launch file gives RViz, as far as they are in the workspace."""
     named = launch.named("rviz")
     paths = {workspace.installed.find_source(each.path or "") for each in named}
-    files: list[RvizFile] = []
+    files = []
     for package in workspace.packages:
         for path in package.rviz_files:
             if package.path(path) in paths:
                 files.append(package.rviz(path))
-    return [file for file in files if file.fault is None and not file.unread]
+    return [file for file in files if not file.fault and not file.unread]
 
 
 def ends_of_displays(file: RvizFile, node: StartedNode) -> Iterator[GraphEnd]:
@@ -41,7 +48,7 @@ def ends_of_displays(file: RvizFile, node: StartedNode) -> Iterator[GraphEnd]:
         for key, other in _TOPICS_OF_DISPLAYS.items() if display.enabled else ():
             message = other or display_types().get(display.kind, "")
             topic = display.node.get(key, "Value") or display.node.get(key)
-            if topic is not None and topic.text:
+            if topic and topic.text:
                 name, doubt = _full_name(topic.text, node)
                 yield GraphEnd(
                     "subscription",
@@ -53,19 +60,22 @@ def ends_of_displays(file: RvizFile, node: StartedNode) -> Iterator[GraphEnd]:
                 )
 
 
-def ends_of_tools(file: RvizFile, node: StartedNode) -> Iterator[GraphEnd]:
-    """Yield what the tools of a file publish."""
+def ends_of_tools(
+    file: RvizFile, node: StartedNode, *, is_placed: bool = False
+) -> Iterator[GraphEnd]:
+    """Yield what the tools of a file publish; each is where its name is only if it `is_placed`."""
     root = read_yaml(file.source.text.encode(), file.source.path)  # which is known to be YAML
     tools = root.get("Visualization Manager", "Tools")
-    for tool in tools.items if tools is not None else ():
+    for tool in tools.items if tools else ():
         written = tool.get("Class")
-        kind = ((written.text or "") if written is not None else "").rpartition("/")[2]
+        kind = last_part((written.text or "") if written is not None else "")
         topic = tool.get("Topic", "Value") or tool.get("Topic")
-        if kind in _TOOLS and topic is not None and topic.text:
+        if kind in TOOL_TYPES and topic is not None and topic.text:
             name, doubt = _full_name(topic.text, node)
             # Its place is that of RViz: what a tool may publish is drawn where something reads it.
-            at, note = node.location, f"the tool {kind}"
-            message = shown_type(_TOOLS[kind])
+            at = topic.location if is_placed else node.location
+            note = f"the tool {kind}"
+            message = shown_type(TOOL_TYPES[kind])
             yield GraphEnd("publisher", name, message, at, doubt=doubt, note=note)
 
 

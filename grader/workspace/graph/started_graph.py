@@ -2,9 +2,9 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import NamedTuple
 
 from grader.base.errors import NotDecided
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.ros.known.end_rows import (
     OnlyMore,
@@ -15,7 +15,8 @@ from grader.ros.known.package_rows import controller_row, program_row
 from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import Launch, StartedNode
-from grader.ros.launch.node_parameters import NodeParameters, list_controllers
+from grader.ros.launch.node_parameters import NodeParameters
+from grader.ros.launch.started_commands import StartedCommand
 from grader.ros.nodes.node_facts import NodeFacts, Qos
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
@@ -43,19 +44,23 @@ from grader.workspace.graph.started_controllers import (
     defined_controllers,
     spawned_controllers,
 )
-from grader.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
+from grader.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS, list_spawned
 from grader.workspace.model.workspace import Workspace
 
-_RVIZ, _IMAGE_BRIDGE = "rviz2", "image_bridge"
+_RECORDER = "/rosbag2_recorder"
+_BAG = "ros2bag/record"
+_RVIZ = "rviz2"
+_IMAGE_BRIDGE = "image_bridge"
 _AT_RUN_TIME = "whether it is started is known only at run time"
 _HIDDEN = frozenset({"/rosout", "/parameter_events", "/tf", "/tf_static"})
-_GAZEBO_CLASSIC, _SPAWN = ("gazebo", "gzserver"), "gazebo_ros/spawn_entity.py"
+_GAZEBO_CLASSIC = ("gazebo", "gzserver")
+_SPAWN = "gazebo_ros/spawn_entity.py"
 _NO_RELEASE = "the release of ROS 2, on which it depends, is not stated"
 _USUAL_RELEASES: tuple[Release, ...] = ("humble", "jazzy")
 _TOO_MUCH = "reading it takes more work than one workspace may use"
 
 
-class _Making(NamedTuple):
+class _Making(Named):
     """What the parts of the graph of a launch file are made from."""
 
     workspace: Workspace
@@ -70,9 +75,9 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
     """Return what runs after a launch file is launched, by its number among the roots."""
     package, launch = workspace.launches.roots[number]
     making = _Making(workspace, number, package, launch, last_release(workspace))
-    nodes: list[GraphNode] = []
-    processes: list[EndedProcess] = []
-    not_started: list[EndedProcess] = []
+    nodes = []
+    processes = []
+    not_started = []
     programs = [node for node in launch.nodes if not node.is_component]
     for process_number, node in enumerate(programs):
         process = EndedProcess(node.name, node.location, _find_doubt(node))
@@ -86,8 +91,8 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
     nodes += _components(making, {node.location for node in programs})
     nodes += _controllers(making)
     nodes += _included_programs(making, processes)
-    nodes += _plugins(making, [*nodes], processes)
-    processes += [EndedProcess(command, _start(launch)) for command in launch.commands]
+    nodes += _plugins(making, list(nodes), processes)
+    _add_commands(launch, nodes, processes)
     graph = LaunchGraph(
         launch.source.path,
         tuple(nodes),
@@ -101,6 +106,25 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
         more = Unread("it has more connections, of which the first are listed", _start(launch))
         graph = graph._replace(unread=(*graph.unread, more))
     return graph
+
+
+def _add_commands(launch: Launch, nodes: list[GraphNode], processes: list[EndedProcess]) -> None:
+    """Add what the commands of a launch file start: recorders are nodes."""
+    for command in launch.commands:
+        recorder = _make_recorder(command) if command.when is not False else None
+        if recorder:
+            nodes.append(recorder)
+        elif command.when is not False:
+            doubt = _AT_RUN_TIME if command.when is None else ""
+            processes.append(EndedProcess(command.text, command.location, doubt))
+
+
+def _make_recorder(command: StartedCommand) -> GraphNode | None:
+    """Return the node of a command that records topics; None for another command."""
+    at = command.location
+    doubt = _AT_RUN_TIME if command.when is None else ""
+    ends = tuple(GraphEnd("subscription", name, "", at) for name in command.recorded_topics)
+    return GraphNode(_RECORDER, _BAG, "program", at, ends, doubt) if ends else None
 
 
 def included_files(launch: Launch) -> int:
@@ -118,16 +142,16 @@ def _find_doubt(node: StartedNode) -> str:
 
 def _is_process(node: StartedNode) -> bool:
     """Return whether a program is no node, or ends when it has done its work."""
-    row = opened_ends(node.package, node.executable)
-    if node.executable in SPAWNERS or (row is not None and row.is_process):
+    row = opened_ends(*node.program)
+    if node.executable in SPAWNERS or (row and row.is_process):
         return True
-    return program_row(node.package, node.executable).ends_unless is not None
+    return program_row(*node.program).ends_unless is not None
 
 
 def _nodes_of_program(making: _Making, node: StartedNode) -> Iterator[GraphNode]:
     """Yield the nodes of a program: those of own code, each, or that of a known one."""
     workspace = making.workspace
-    if workspace.find_package(node) is None:
+    if not workspace.find_package(node):
         yield from _known_nodes(making, node, "program")
         return
     own_nodes = workspace.code.find_nodes(node)
@@ -153,8 +177,8 @@ def _own_node(
     """Return a node of the workspace with what its code opens."""
     workspace = making.workspace
     name = facts.name if node.node_name == "" else node.node_name
-    ends: list[GraphEnd] = []
-    parameters: list[GivenValue] = []
+    ends = []
+    parameters = []
     opens_more = _doubt_of_code(workspace, node, facts)
     try:
         for end in opened_by_code(workspace, node, facts, making.number):
@@ -172,8 +196,8 @@ def _own_node(
                 )
             )
         given = workspace.parameters.read(making.package, node, name or "")
-        row = opened_ends(node.package, node.executable)
-        if opens_more and row is not None:  # a well-known program whose sources are here
+        row = opened_ends(*node.program)
+        if opens_more and row:  # a well-known program whose sources are here
             named = node._replace(node_name=name)
             ends += ends_of_row(row, named, given, making.release)
         ends += _clock_read(given)
@@ -182,7 +206,8 @@ def _own_node(
     except NotDecided:
         opens_more = _TOO_MUCH
     made = _graph_node(node, name, kind, inside)
-    shown, different = _shown(ends), tuple(parameters)
+    shown = _shown(ends)
+    different = tuple(parameters)
     return made._replace(ends=shown, opens_more=opens_more, parameters=different)
 
 
@@ -191,7 +216,7 @@ def _doubt_of_code(workspace: Workspace, node: StartedNode, facts: NodeFacts) ->
     if facts.doubts:
         return facts.doubts[0].reason
     code = workspace.code.by_package.get(node.package)
-    for doubt in code.doubts if code is not None else ():
+    for doubt in code.doubts if code else ():
         if doubt.location.path == facts.location.path:
             return doubt.reason
     return ""
@@ -199,7 +224,8 @@ def _doubt_of_code(workspace: Workspace, node: StartedNode, facts: NodeFacts) ->
 
 def _graph_node(node: StartedNode, name: str | None, kind: GraphNodeKind, inside: str) -> GraphNode:
     """Return a started node under a name, without what it opens."""
-    full, at = _full_name(node, name), node.location
+    full = _full_name(node, name)
+    at = node.location
     return GraphNode(full, node.name, kind, at, doubt=_find_doubt(node), inside=inside)
 
 
@@ -218,7 +244,7 @@ def _different(given: NodeParameters, defaults: Mapping[str | None, object]) -> 
 
     What is not declared under its name may be so under a computed one.
     """
-    values: list[GivenValue] = []
+    values = []
     for name, row in given.values.items():
         if isinstance(row.value, Unknown) or defaults.get(name, None) == row.value:
             continue
@@ -235,8 +261,8 @@ def _known_nodes(
     """
     outer = _known_node(making, node, kind, inside)
     yield outer
-    row = opened_ends(node.package, node.executable)
-    for name in row.holds if row is not None else ():
+    row = opened_ends(*node.program)
+    for name in row.holds if row else ():
         held = node._replace(executable=name, node_name=name)
         full = "" if node.namespace is None else node.full_name(f"{name}/{name}")
         space = f"{(node.namespace or '').rstrip('/')}/{name}"
@@ -256,23 +282,24 @@ def _known_node(
 
     `given_to` is what has its parameters, if that is in another namespace.
     """
-    row = opened_ends(node.package, node.executable)
+    row = opened_ends(*node.program)
     name = node.node_name
     if name == "":
         in_program = making.workspace.code.name_in_program(node)
-        name = (row.name if row is not None else "") or in_program
+        name = (row.name if row else "") or in_program
     named = node._replace(node_name=name)
     ends: list[GraphEnd] = []
-    parameters: list[GivenValue] = []
+    parameters = []
     opens_more = f"what {node.name} opens is not known"
     only: OnlyMore = ""
-    if row is not None:
-        opens_more, only = row.opens_more, row.opens_only
+    if row:
+        opens_more = row.opens_more
+        only = row.opens_only
     if node.package == BRIDGE and not are_rows_known(making.workspace, node):
         opens_more = "which topics it bridges is not known"
     try:
         given = making.workspace.parameters.read(making.package, given_to or node, name or "")
-        if row is not None:
+        if row:
             ends += ends_of_row(row, named, given, making.release)
         if node.executable == _RVIZ:
             ends = _ends_of_rviz(making, named) or ends
@@ -281,13 +308,14 @@ def _known_node(
         defaults: dict[str | None, object] = {}
         for parameter in given.values:
             parameter_row = row_for(node.name, parameter, making.release)
-            if parameter_row is not None:
+            if parameter_row:
                 defaults[parameter] = parameter_row.default
         parameters += _different(given, defaults)
         if node.executable == _IMAGE_BRIDGE:
             ends += _bridged_images(named)
     except NotDecided:
-        opens_more, only = _TOO_MUCH, ""
+        opens_more = _TOO_MUCH
+        only = ""
     made = _graph_node(node, name, kind, inside)._replace(opens_more=opens_more, opens_only=only)
     return made._replace(ends=_shown(ends), parameters=tuple(parameters))
 
@@ -295,14 +323,14 @@ def _known_node(
 def _clock_read(given: NodeParameters) -> Iterator[GraphEnd]:
     """Yield the clock that a node subscribes to which uses simulated time: time_source.cpp."""
     used = given.values.get("use_sim_time")
-    if used is not None and used.value is True:
+    if used and used.value is True:
         qos = Qos(1, "best_effort", "volatile")
         yield GraphEnd("subscription", "/clock", "rosgraph_msgs/msg/Clock", used.location, qos)
 
 
 def _ends_for_rules(making: _Making, node: StartedNode) -> Iterator[GraphEnd]:
     """Yield the ends of a program that rules know as well, and those of bridges."""
-    notes: dict[tuple[str, str], str] = {}
+    notes = {}
     if node.package == BRIDGE:
         for row in rows_of_bridge(making.workspace, node):
             for kind in ("publisher", "subscription"):
@@ -339,7 +367,8 @@ def _components(making: _Making, programs: Collection[Location]) -> Iterator[Gra
     for container in launch.containers:
         if container.when is not False and container.location not in programs:
             doubt = "" if container.when else _AT_RUN_TIME
-            name, at = container.name or "", container.location
+            name = container.name or ""
+            at = container.location
             yield GraphNode(name, "a container", "container", at, (), doubt)
     by_place = {container.location: container.name or "" for container in launch.containers}
     for component in launch.components:
@@ -347,8 +376,9 @@ def _components(making: _Making, programs: Collection[Location]) -> Iterator[Gra
         if component.when is False:
             continue
         inside = component.container or by_place.get(component.loaded_at, "")
-        if node is None:
-            at, doubt = component.location, "" if component.when else _AT_RUN_TIME
+        if not node:
+            at = component.location
+            doubt = "" if component.when else _AT_RUN_TIME
             reason = "which class is loaded is not evaluated"
             yield GraphNode("", "a component", "component", at, (), doubt, reason, (), inside)
             continue
@@ -364,7 +394,8 @@ def _controllers(making: _Making) -> Iterator[GraphNode]:
 
     Where no program of the launch is the manager, the one in Gazebo is meant.
     """
-    workspace, launch = making.workspace, making.launch
+    workspace = making.workspace
+    launch = making.launch
     try:
         spawned = spawned_controllers(workspace, making.number)
         defined = {each.name: each for each in reversed(defined_controllers(workspace))}
@@ -374,15 +405,17 @@ def _controllers(making: _Making) -> Iterator[GraphNode]:
     managers = [node for node in launch.nodes if node.executable == CONTROL_NODE and node.when]
     named = _spawned_nodes(launch)
     if named and not managers:
-        name, at = _full_name(named[0][1], MANAGER), named[0][0].location
+        name = _full_name(named[0][1], MANAGER)
+        at = named[0][0].location
         yield GraphNode(name, "the controller manager", "program", at)
     for spawner, started in named:
         name = started.node_name or ""
         manager = managers[0] if managers else started._replace(remaps=())
         remaps = None
         if manager.remaps is not None:
-            remaps = (*spawned.get(name, ()), *manager.remaps)
-        node, gifts = started._replace(remaps=remaps), owners.get(name, [])
+            remaps = spawned.get(name, ()) + manager.remaps
+        node = started._replace(remaps=remaps)
+        gifts = owners.get(name, [])
         given = NodeParameters({}, node)
         if gifts:
             given = NodeParameters(gifts[0].values, node, gifts[0].unknown)
@@ -394,8 +427,8 @@ def _spawned_nodes(launch: Launch) -> list[tuple[StartedNode, StartedNode]]:
     """Return the controllers that spawners start, each behind its spawner."""
     named = []
     for node in launch.nodes:
-        if node.executable in SPAWNERS and node.when is not False:
-            named += [(node, started) for started in list_controllers(node) or ()]
+        if node.when is not False:
+            named += [(node, started) for started in list_spawned(node)]
     return named
 
 
@@ -408,8 +441,9 @@ def _controller(
 ) -> GraphNode:
     """Return a controller as a node."""
     node = given.node
-    name, doubt = _full_name(node, node.node_name), _find_doubt(spawner)
-    if controller is None:
+    name = _full_name(node, node.node_name)
+    doubt = _find_doubt(spawner)
+    if not controller:
         reason = "no file defines it"
         at = spawner.location
         return GraphNode(name, "a controller", "controller", at, (), doubt, reason, (), inside)
@@ -419,11 +453,13 @@ def _controller(
     ends: Sequence[GraphEnd] = ()
     opens_more = f"what {kind} opens is not known"
     only: OnlyMore = ""
-    if row is not None:
+    if row:
         located = node._replace(location=controller.location)
-        ends = _shown([*_ends_of_controller(making, row, located, given)])
-        opens_more, only = row.opens_more, row.opens_only
-    at, shown = controller.location, tuple(ends)
+        ends = _shown(list(_ends_of_controller(making, row, located, given)))
+        opens_more = row.opens_more
+        only = row.opens_only
+    at = controller.location
+    shown = tuple(ends)
     return GraphNode(name, kind, "controller", at, shown, doubt, opens_more, (), inside, only)
 
 
@@ -431,7 +467,7 @@ def _ends_of_controller(
     making: _Making, row: OpenedEnds, node: StartedNode, given: NodeParameters
 ) -> Iterator[GraphEnd]:
     """Yield what a controller opens; if no release is stated, what depends on it is not certain."""
-    others: list[set[GraphEnd]] = []
+    others = []
     for release in () if making.workspace.releases else _USUAL_RELEASES:
         others.append({*ends_of_row(row, node, given, release)})
     for end in ends_of_row(row, node, given, making.release):
@@ -453,7 +489,7 @@ def _plugins(
 ) -> Iterator[GraphNode]:
     """Yield the nodes of plug-ins where Gazebo Classic is started."""
     programs = {node.program for node in nodes}
-    commands = {command.split()[0] for command in making.launch.commands if command.strip()}
+    commands = {command.split()[0] for command in making.launch.command_texts if command.strip()}
     if "gazebo_ros/gazebo" in programs or not commands.isdisjoint(_GAZEBO_CLASSIC):
         is_spawned = any(process.program == _SPAWN for process in processes)
         yield from plugin_nodes(making.workspace, making.release, is_spawned=is_spawned)
@@ -475,7 +511,7 @@ def _transforms(making: _Making) -> Iterator[GraphTransform]:
 def _unread(making: _Making) -> Iterator[Unread]:
     """Yield what may start more, without what the graph has of components and included files."""
     launch = making.launch
-    if launch.syntax is not None:
+    if launch.syntax:
         yield Unread(launch.syntax.message, launch.syntax.location)
     elif launch.unread:
         yield Unread(launch.unread, _start(launch))

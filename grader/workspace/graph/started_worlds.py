@@ -1,9 +1,10 @@
 """The worlds of Gazebo that launch files start, and the systems that it loads in them."""
 
-import re
 from collections.abc import Sequence
-from typing import NamedTuple
 
+from grader.base.names import last_part
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.ros.xml.parsing import XmlFile
 from grader.workspace.graph.gazebo_topics import name_system, roots
@@ -22,18 +23,18 @@ _SHOWING = frozenset(
 _SIMULATION = "ros_gz_sim"
 _OTHER_PROGRAMS = ("create", "remove", "set_entity_pose")  # of that package
 # The launch files and commands that start Gazebo, which other packages also have.
-_STARTS = re.compile(r"ros_gz_sim/|gz_sim|gz_server|gzserver|gazebo|\bgz sim\b|\bign\b")
-_OF_GAZEBO = re.compile(r"(lib)?(gz-sim|ignition-gazebo)\d*-")
+_STARTS = on_use(r"ros_gz_sim/|gz_sim|gz_server|gzserver|gazebo|\bgz sim\b|\bign\b")
+_OF_GAZEBO = on_use(r"(lib)?(gz-sim|ignition-gazebo)\d*-")
 # Libraries whose systems have other names: CMakeLists.txt in src/systems of gz-sim8.
 _OTHER_NAMES = {
     "multicopter-control": ("MulticopterVelocityControl",),
     "log": ("LogRecord", "LogPlayback"),
     "dvl": ("DopplerVelocityLogSystem", "DopplerVelocityLog"),
 }
-_LIBRARY = re.compile(r"(?:lib)?(?:gz-sim|ignition-gazebo)\d*-([\w-]+)-system(?:\.so)?")
+_LIBRARY = on_use(r"(?:lib)?(?:gz-sim|ignition-gazebo)\d*-([\w-]+)-system(?:\.so)?")
 
 
-class _StartedWorlds(NamedTuple):
+class _StartedWorlds(Named):
     """The worlds that launch files start, and the systems that Gazebo loads in them.
 
     Systems have the names of their classes. Those of models and robots are among them, and in a
@@ -53,15 +54,16 @@ def started_worlds(workspace: Workspace) -> _StartedWorlds:
     worlds = _worlds(workspace)
     named = _named_worlds(workspace, worlds)
     files = named or (worlds if len(worlds) == 1 else [])
-    systems: set[str] = set()
-    own_systems: set[str] = set()
-    misnamed: dict[str, tuple[str, Location]] = {}
+    systems = set()
+    own_systems = set()
+    misnamed = {}
     others = [world.root for world in worlds if files and world not in files]
     for root, place in roots(workspace):
         if any(root is other for other in others):
             continue
         for plugin in root.iter("plugin"):
-            system, library = name_system(plugin), plugin.get("filename", "")
+            system = name_system(plugin)
+            library = plugin.get("filename", "")
             if not _has_system(library, system):
                 misnamed[system] = library, place(plugin)
             elif _LIBRARY.fullmatch(library):
@@ -96,10 +98,10 @@ def _worlds(workspace: Workspace) -> list[XmlFile]:
 
 def _named_worlds(workspace: Workspace, worlds: Sequence[XmlFile]) -> list[XmlFile]:
     """Return the worlds that launch files name."""
-    texts = [*workspace.texts.searched_launch_texts()]
+    texts = list(workspace.texts.searched_launch_texts())
     named = []
     for file in worlds:
-        name = file.source.path.rpartition("/")[2]
+        name = last_part(file.source.path)
         if any(name in text for text in texts):
             named.append(file)
     return named
@@ -109,31 +111,31 @@ def _may_start_gazebo(workspace: Workspace) -> bool:
     """Return whether a launch file starts Gazebo, or something that is not known."""
     if workspace.launches.unknown_nodes:
         return True
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         if node.package == _SIMULATION and node.executable not in _OTHER_PROGRAMS:
             return True
-    for _, launch in workspace.launches.roots:
+    for launch in workspace.launches.outermost:
         included = [passed.path for passed in launch.passed]
-        if any(_STARTS.search(text) for text in (*included, *launch.commands)):
+        if any(_STARTS.search(text) for text in (*included, *launch.command_texts)):
             return True
     return False
 
 
 def _has_system(library: str, system: str) -> bool:
     """Return whether a library has a system; one that is not of Gazebo may have any."""
-    name = library.rpartition("/")[2]
+    name = last_part(library)
     if not _OF_GAZEBO.match(name):
         return True
     match = _LIBRARY.fullmatch(name)
-    if match is None:
+    if not match:
         return False
     return system in _OTHER_NAMES.get(match[1], ()) or match[1].replace("-", "") == system.lower()
 
 
 def has_programs(workspace: Workspace) -> bool:
     """Return whether a workspace has nodes, controllers or a world, not only a robot to show."""
-    if any(code.nodes for code in workspace.code.by_package.values()):
+    if workspace.code.nodes:
         return True
-    if any(node.package not in _SHOWING for _, node in workspace.launches.nodes):
+    if any(node.package not in _SHOWING for node in workspace.launches.nodes):
         return True
     return bool(defined_controllers(workspace) or started_worlds(workspace).files)

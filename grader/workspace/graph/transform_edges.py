@@ -4,8 +4,10 @@ They are what `ros2 run tf2_tools view_frames` would show.
 """
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import Any
 
+from grader.base.grouping import Strings
 from grader.base.text import quoted
 from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
 from grader.ros.known.package_rows import DecidingParameter, find_transforms, package_row
@@ -20,7 +22,7 @@ from grader.ros.package.static_transforms import (
 )
 from grader.ros.python.values import Unknown
 from grader.ros.xml.parsing import Element
-from grader.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
+from grader.workspace.graph.bridge_rows import PARAMETER_BRIDGE, rows_of_bridge
 from grader.workspace.graph.code_ends import list_frames
 from grader.workspace.graph.gazebo_topics import name_system, roots
 from grader.workspace.graph.included_nodes import included_nodes
@@ -41,7 +43,7 @@ def _edges_of_publishers(
     is_certain = any(not node.frame_prefix and publishes_as_named(node) for node in publishers)
     topics = [node.topic("joint_states") for node in publishers]
     states = tuple(topic for topic in topics if topic is not None)
-    yield from _edges_of_robots(workspace, states, is_certain=is_certain)
+    yield from _edges_of_robots(workspace, states, is_certain)
 
 
 def edges_in(workspace: Workspace, launch: int) -> Iterator[GraphTransform]:
@@ -66,7 +68,7 @@ def is_zero_rotation(node: StartedNode) -> bool:
 
     Its quaternion is 0 0 0 0.
     """
-    is_static = (node.package, node.executable) == STATIC_PUBLISHER
+    is_static = node.program == STATIC_PUBLISHER
     return is_static and publishes_as_named(node) and has_zero_rotation(node)
 
 
@@ -74,8 +76,8 @@ def _published_by(
     workspace: Workspace, package: Package, node: StartedNode
 ) -> Iterator[GraphTransform]:
     """Yield the transforms that a node publishes, but for those of the robot."""
-    program = (node.package, node.executable)
-    if program == (BRIDGE, "parameter_bridge"):
+    program = node.program
+    if program == PARAMETER_BRIDGE:
         yield from _broadcast_by_gazebo(workspace, node)
     elif program == STATIC_PUBLISHER:
         parent, child = frames_named(node)
@@ -97,13 +99,14 @@ def _published_by(
             given = workspace.parameters.given_to(package, node)
             for parent, child in _broadcast("/".join(program), given):
                 is_certain = publishes_as_named(node)
-                by, at = node.executable, node.location
+                by = node.executable
+                at = node.location
                 yield GraphTransform(parent, child, "program", is_certain, by, at)
 
 
 def publishes_as_named(node: StartedNode) -> bool:
     """Return whether a node is started for certain, and publishes on /tf."""
-    if node.when is not True or node.remaps is None:
+    if not node.when or node.remaps is None:
         return False
     return not any("tf" in rule[0] for rule in node.remaps)
 
@@ -120,24 +123,26 @@ def _edges_of_code(workspace: Workspace, node: StartedNode) -> Iterator[GraphTra
             yield GraphTransform(first, name or "", "code", False, node.executable, frame.location)
 
 
+@lru_cache(maxsize=4)
 def _edges_of_robots(
-    workspace: Workspace, states: tuple[str, ...], *, is_certain: bool
-) -> Iterator[GraphTransform]:
-    """Yield the joints of the robots, which robot_state_publisher publishes.
+    workspace: Workspace, states: Strings, is_certain: bool
+) -> Sequence[GraphTransform]:
+    """Return the joints of the robots, which robot_state_publisher publishes.
 
     `states` are the topics of the states of joints that move.
 
     It is certain where it is known of which robot.
     """
     is_one = len(workspace.robots.known) == 1 and not workspace.robots.may_be_others
+    edges = []
     for known_robot in workspace.robots.known:
         for joint in known_robot.robot.joints:
-            if joint.location is None:
+            if not joint.location:
                 continue
             pose = None
-            if joint.type == "fixed" and joint.origin is not None:
+            if joint.type == "fixed" and joint.origin:
                 pose = joint.origin.placed_in()
-            yield GraphTransform(
+            edge = GraphTransform(
                 joint.parent,
                 joint.child,
                 "robot",
@@ -148,6 +153,8 @@ def _edges_of_robots(
                 pose=pose,
                 needs=states if joint.type in _MOVING else (),
             )
+            edges.append(edge)
+    return edges
 
 
 def _broadcast_by_controllers(workspace: Workspace, launch: int) -> Iterator[GraphTransform]:
@@ -159,8 +166,11 @@ def _broadcast_by_controllers(workspace: Workspace, launch: int) -> Iterator[Gra
         gifts = workspace.parameters.owners.get(controller.name, [])
         if len(gifts) == 1:
             for parent, child in _broadcast(controller.type.text or "", gifts[0]):
-                by, at = controller.name, controller.location
-                yield GraphTransform(parent, child, "controller", True, by, at)
+                by = controller.name
+                at = controller.location
+                edge = GraphTransform(parent, child, "controller", True, by, at)
+                named = [row.location for row in gifts[0].values.values() if row.value == child]
+                yield edge._replace(named_at=next(iter(named), None))
 
 
 def _broadcast_by_gazebo(workspace: Workspace, bridge: StartedNode) -> Iterator[GraphTransform]:
@@ -170,12 +180,9 @@ def _broadcast_by_gazebo(workspace: Workspace, bridge: StartedNode) -> Iterator[
     """
     if bridge.namespace not in ("", "/"):
         return
-    topics = set()
-    for row in rows_of_bridge(workspace, bridge):
-        if row.is_published and bridge.topic(f"/{row.ros}") == _TF:
-            topics.add(row.gz)
+    topics = topics_of_transforms(workspace, bridge)
     for root, place in roots(workspace) if topics else ():
-        plugins = [*root.iter("plugin")]
+        plugins = list(root.iter("plugin"))
         workspace.charge(_OF_ROBOT + len(plugins))
         for plugin in plugins:
             topic = (plugin.findtext("tf_topic") or "").strip().strip("/")
@@ -186,13 +193,19 @@ def _broadcast_by_gazebo(workspace: Workspace, bridge: StartedNode) -> Iterator[
                 yield GraphTransform(*frames, "Gazebo", is_certain, by, place(plugin))
 
 
+def topics_of_transforms(workspace: Workspace, bridge: StartedNode) -> set[str]:
+    """Return the topics of Gazebo whose transforms a bridge publishes, without their slash."""
+    rows = rows_of_bridge(workspace, bridge)
+    return {row.gz for row in rows if row.is_published and bridge.topic(f"/{row.ros}") == _TF}
+
+
 def frames_of_system(plugin: Element) -> tuple[str, str] | None:
     """Return parent and child of the transform that a system of Gazebo publishes.
 
     The result is None if it does not name both.
     """
     frames = gazebo().system.get(name_system(plugin), NO_SYSTEM).transform
-    if frames is None:
+    if not frames:
         return None
     parent = (plugin.findtext(frames.parent) or "").strip()
     child = (plugin.findtext(frames.child) or "").strip()
@@ -217,5 +230,5 @@ def _broadcast(kind: str, given: NodeParameters) -> Iterator[tuple[str, str]]:
 def _value(given: NodeParameters, part: DecidingParameter) -> Any:
     """Return the value of a parameter, or its default; None where it is not known."""
     row = given.values.get(part.parameter)
-    value = row.value if row is not None else part.default
+    value = row.value if row else part.default
     return None if isinstance(value, Unknown) else value

@@ -1,7 +1,5 @@
 """The files of a workspace by what they are used for, whatever their names are."""
 
-from collections.abc import Callable, Mapping
-
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import MAX_NAMED, enumerated
 from grader.ros.package.package import Package
@@ -16,8 +14,14 @@ def used_file(workspace: Workspace, use: str) -> tuple[Package, str]:
 
     Raises MissingElement without one, NotDecided of several.
     """
-    reader, missing = _USES[use]
-    paths = [*dict.fromkeys(reader(workspace))]
+    if use in _USES:
+        reader, missing = _USES[use]
+        paths = reader(workspace)
+    else:
+        node = use.removeprefix("@parameters/")
+        paths = _paths_given(workspace, node)
+        missing = f"no launch file gives parameter files to {node}"
+    paths = list(dict.fromkeys(paths))
     if not paths:
         raise MissingElement("file", use, message=missing)
     if len(paths) > 1:
@@ -25,6 +29,13 @@ def used_file(workspace: Workspace, use: str) -> tuple[Package, str]:
         raise NotDecided(f"{cause}: {enumerated(paths, MAX_NAMED)}", cause)
     package = next(package for package in workspace.packages if package.holds(paths[0]))
     return package, paths[0].removeprefix(package.path(""))
+
+
+def _paths_given(workspace: Workspace, name: str) -> list[str]:
+    """Return the parameter files that nodes of a name are given."""
+    find_name = workspace.code.find_name
+    files = workspace.parameters.files
+    return [path for path, nodes in files.items() if name in map(find_name, nodes)]
 
 
 def _world_paths(workspace: Workspace) -> list[str]:
@@ -37,7 +48,7 @@ def _controller_paths(workspace: Workspace) -> list[str]:
 
 def _bridge_paths(workspace: Workspace) -> list[str]:
     paths = []
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         if node.package == BRIDGE:
             for row in rows_of_bridge(workspace, node):
                 if row.location != node.location:  # an argument
@@ -45,7 +56,7 @@ def _bridge_paths(workspace: Workspace) -> list[str]:
     return paths
 
 
-_USES: Mapping[str, tuple[Callable[[Workspace], list[str]], str]] = {
+_USES = {
     "@world": (_world_paths, "no launch file names a world of the packages"),
     "@controllers": (
         _controller_paths,

@@ -10,6 +10,7 @@ computed unless it is asked for.
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
+from functools import lru_cache
 
 from grader.base.errors import NotDecided
 from grader.base.source import Source, SourceOf
@@ -18,14 +19,14 @@ from grader.workspace.index.names_in_files import names_in_launch_files, names_i
 from grader.workspace.index.names_in_graph import ComputedName, GraphNames
 from grader.workspace.index.names_in_packages import PackageNames
 from grader.workspace.index.names_in_robots import names_in_robots
+from grader.workspace.index.names_in_texts import names_in_texts
 from grader.workspace.index.names_in_xacro import names_in_xacro
 from grader.workspace.index.written_names import (
     Role,
     WrittenName,
     WrittenNames,
+    find_written,
     make_reader,
-    span_of_name,
-    written_name,
 )
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import Definition, Fact, Use
@@ -70,7 +71,8 @@ class WorkspaceNames:
         include one file.
         """
         alike = self._alike.get(_key(one), [])
-        owners, count = {one.owner}, 0
+        owners = {one.owner}
+        count = 0
         while count < len(owners):
             count = len(owners)
             places = {other.location for other in alike if other.owner in owners}
@@ -78,14 +80,16 @@ class WorkspaceNames:
         return tuple(other for other in alike if other.owner in owners)
 
 
+@lru_cache(maxsize=3)
 def read_names(workspace: Workspace) -> WorkspaceNames:
     """Return the names that the files of a workspace define and use."""
     source_of = make_reader(lambda path: workspace.tree.read(path, _MAX_TEXT))
-    names = [*names_in_robots(workspace.urdfs)]
+    names = list(names_in_robots(workspace.urdfs))
     names += names_in_xacro(workspace.urdfs, workspace.robots.xacro_sources)
     names += names_in_launch_files(workspace)
+    names += names_in_texts(workspace, source_of)
     ends = GraphNames(workspace, source_of)
-    computed: list[ComputedName] = []
+    computed = []
     with suppress(NotDecided):
         names += PackageNames(workspace, source_of).names()
     with suppress(NotDecided):
@@ -99,7 +103,7 @@ def read_names(workspace: Workspace) -> WorkspaceNames:
     nodes = {name.name for name in names if name.kind == "node"}
     names += names_in_yaml(workspace, nodes)
     written = {(_key(known_name), known_name.role, known_name.location) for known_name in names}
-    for addition in _names_of_facts(source_of, facts_once(workspace).facts):
+    for addition in _names_of_facts(source_of, facts_once(workspace)[0]):
         if (_key(addition), addition.role, addition.location) not in written:
             names.append(addition)
     return WorkspaceNames(_owned(workspace, names), computed)
@@ -129,12 +133,9 @@ def _names_of_facts(source_of: SourceOf, facts: Iterable[Fact]) -> WrittenNames:
         if not isinstance(fact, Definition | Use) or _is_of_no_place(fact):
             continue
         source = source_of(fact.location.path)
-        span = None
         role: Role = "definition" if isinstance(fact, Definition) else "use"
-        if source is not None and not _is_of_every_robot(fact, source):
-            span = span_of_name(source, fact.location, fact.kind, fact.name, role)
-        if source is not None and span is not None:
-            yield written_name(source, span, fact.kind, fact.name, role, fact.owner)
+        if source and not _is_of_every_robot(fact, source):
+            yield from find_written(source, fact.location, fact.kind, fact.name, role, fact.owner)
 
 
 def _is_of_no_place(fact: Definition | Use) -> bool:

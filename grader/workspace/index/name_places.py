@@ -4,14 +4,13 @@ from collections import Counter
 from collections.abc import Collection
 from functools import cached_property
 
+from grader.base.grouping import Strings
+from grader.base.names import first_part
 from grader.base.source import Location
 from grader.workspace.index.all_names import WorkspaceNames, read_names
 from grader.workspace.index.name_texts import list_texts
 from grader.workspace.index.names_in_graph import ComputedName
-from grader.workspace.index.offered_elements import offered_elements
-from grader.workspace.index.offered_macros import parameters_of_macro
-from grader.workspace.index.offered_names import offered_names
-from grader.workspace.index.offered_parameters import parameter_text, parameters_below
+from grader.workspace.index.offered_builds import find_macros
 from grader.workspace.index.renamed_graph import (
     PARAMETER,
     computed_like,
@@ -87,12 +86,10 @@ class NamePlaces:
 
     def computed_like(self, places: Collection[WrittenName]) -> list[ComputedName]:
         """Return the names that no file writes and that may be the one of some places."""
-        computed = [*computed_like(self._names.computed, places)]
-        return computed or [*open_ends(self._opened.workspace, places)]
+        computed = list(computed_like(self._names.computed, places))
+        return computed or list(open_ends(self._opened.workspace, places))
 
-    def graph_under(
-        self, kind: str, places: Collection[WrittenName], new: str
-    ) -> Counter[tuple[str, ...]]:
+    def graph_under(self, kind: str, places: Collection[WrittenName], new: str) -> Counter[Strings]:
         """Return what runs after each launch, with another name in place of that of some places."""
         paths = {place.location.path for place in places}
         names = {place.name for place in places}
@@ -108,8 +105,8 @@ class NamePlaces:
         if name.kind == _IN_FILES:
             return {place.location.path for place in places}
         if name.kind == "parameter":
-            owners = {place.owner.partition("/")[0] for place in places}
-            return [*files_for_parameters(self._opened.workspace, owners)]
+            owners = {first_part(place.owner) for place in places}
+            return list(files_for_parameters(self._opened.workspace, owners))
         return self._opened.whole_tree.files
 
     def words_left(self, places: Collection[WrittenName]) -> list[Location]:
@@ -131,61 +128,45 @@ class NamePlaces:
             for written in self._names.names
             if written.location.path == path and written.kind == "file" and written.role == "use"
         }
-        return [*by_place.values()]
+        return list(by_place.values())
 
     def started_in(self, path: str) -> list[StartedName]:
         """Return the nodes and components that a launch file itself starts."""
-        return [*started_in(self._opened.workspace, path)]
+        return list(started_in(self._opened.workspace, path))
 
     def list_texts(self, name: WrittenName) -> list[str]:
         """Return what else is known of a name, a fact each."""
-        return [*list_texts(self._opened.workspace, name)]
+        return list(list_texts(self._opened.workspace, name))
+
+    @cached_property
+    def _listed(self) -> list[WrittenName]:
+        """The definitions that files have for others, each place once, in their order."""
+        by_place: dict[object, WrittenName] = {}
+        for definition in self._names.names:
+            if _is_listed(definition):
+                place = (definition.location, definition.kind, definition.name)
+                by_place.setdefault(place, definition)
+        return list(by_place.values())
 
     def defined_in(self, path: str) -> list[WrittenName]:
         """Return the names that a file defines, each place once, in its order."""
-        by_place: dict[object, WrittenName] = {}
-        for definition in self._names.names:
-            if definition.location.path == path and _is_listed(definition):
-                by_place.setdefault(
-                    (definition.location, definition.kind, definition.name), definition
-                )
-        return [*by_place.values()]
+        return [definition for definition in self._listed if definition.location.path == path]
 
     def holding(self, text: str, most: int) -> list[WrittenName]:
         """Return the first definitions whose names hold a text, in whatever case."""
-        by_place: dict[object, WrittenName] = {}
-        for definition in self._names.names:
-            if _is_listed(definition) and text.lower() in definition.name.lower():
-                by_place.setdefault(
-                    (definition.location, definition.kind, definition.name), definition
-                )
-        return [*by_place.values()][:most]
-
-    def offered(self, kind: str, owner: str) -> list[str]:
-        """Return the names of a kind that may be written, as `offered_names` does."""
-        return offered_names(self._opened.workspace, kind, owner)
-
-    def elements_behind(self, text: str) -> list[tuple[str, str]]:
-        """Return the elements or attributes that may follow a text, as `offered_elements` does."""
-        return [*offered_elements(text)]
+        holding = [each for each in self._listed if text.lower() in each.name.lower()]
+        return holding[:most]
 
     def parameters_of_macro(self, name: str) -> list[tuple[str, list[str]]]:
-        """Return the file and the parameters of each macro, as `parameters_of_macro` does."""
-        return [*parameters_of_macro(self._opened, name)]
-
-    def parameters_below(self, section: str, prefix: str) -> list[str]:
-        """Return the keys that a section of parameters may have, as `parameters_below` does."""
-        return parameters_below(self._opened.workspace, section, prefix)
-
-    def parameter_text(self, section: str, name: str) -> str:
-        """Return what is known of a parameter, as `parameter_text` does."""
-        return parameter_text(self._opened.workspace, section, name)
+        """Return the file of each macro of a name, and its parameters as they are written."""
+        macros = find_macros(self._opened.workspace)
+        return [(path, parameters) for path, macro, parameters in macros if macro == name]
 
     def values(self, name: WrittenName) -> list[str]:
         """Return the values that an argument has, as far as they are known, each once."""
         known_values: list[str] = []
         if name.kind == "launch argument":
-            for _, _, launch in self._opened.workspace.launches.files:
+            for launch in self._opened.workspace.launches.every:
                 known_values += (
                     value for declared, value in launch.values if declared == name.name
                 )
@@ -197,4 +178,4 @@ class NamePlaces:
                     for argument in arguments
                     if argument.name == name.name and argument.value
                 )
-        return [*dict.fromkeys(known_values)]
+        return list(dict.fromkeys(known_values))

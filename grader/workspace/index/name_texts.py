@@ -14,12 +14,12 @@ _MAX_FIELDS = 20
 def list_texts(workspace: Workspace, name: WrittenName) -> Iterator[str]:
     """Yield what is known of a topic, service, action or type of messages, a fact each."""
     if name.kind in ("topic", "service", "action"):
-        rows: dict[str, None] = {}
+        rows = {}
         try:
             rows.update(dict.fromkeys(_ends(workspace, name.owner)))
         except NotDecided:
             return
-        yield from [*rows][:_MAX_ENDS]
+        yield from list(rows)[:_MAX_ENDS]
     elif name.kind == "message type":
         yield from _fields(workspace, name.name)
 
@@ -38,7 +38,7 @@ def _fields(workspace: Workspace, full: str) -> Iterator[str]:
     """Yield the fields of an own message, service or action."""
     package, _, name = full.partition("/")
     interfaces = workspace.code.interfaces.get(package)
-    if interfaces is None or name.replace("/", ".") not in interfaces.types:
+    if not interfaces or name.replace("/", ".") not in interfaces.types:
         return
     sections = interfaces.types[name.replace("/", ".")].interface.sections
     fields = [field for section in sections for field in section.fields.items()]

@@ -3,8 +3,9 @@
 from collections.abc import Collection, Iterator
 from contextlib import suppress
 
-from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml
-from grader.ros.config.yaml_values import PARAMETERS, values_in
+from grader.base.names import last_part
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.config.yaml_values import PARAMETERS, tables_in, values_in
 from grader.ros.launch.argument_names import argument_names
 from grader.workspace.index.written_names import (
     Role,
@@ -40,9 +41,9 @@ def names_in_yaml(workspace: Workspace, nodes: Collection[str]) -> WrittenNames:
 
     The sections are those of controllers and of these nodes.
     """
-    for _, tree in workspace.installed.trees:
+    for tree in workspace.installed.trees:
         for key, mapping in _keys_with_parameters(tree):
-            name = key.rpartition("/")[2]
+            name = last_part(key)
             if key in workspace.installed.typed_sections:
                 yield _name_of_key(mapping, key, "controller", name)
             elif name in nodes:
@@ -56,19 +57,15 @@ def names_in_yaml(workspace: Workspace, nodes: Collection[str]) -> WrittenNames:
 
 def _keys_with_parameters(tree: YamlNode) -> Iterator[tuple[str, YamlNode]]:
     """Yield the keys that have parameters of ROS below them, each with its mapping."""
-    visits, waiting = Visits(), [tree]
-    while waiting:
-        mapping = waiting.pop()
-        if not isinstance(mapping.value, dict) or not visits.enters(mapping):
-            continue
-        for key, inner in mapping.value.items():
-            if inner.get(PARAMETERS) is not None:
+    for mapping in tables_in(tree):
+        for key, inner in mapping.table.items():
+            if inner.get(PARAMETERS):
                 yield key, mapping
-            waiting.append(inner)
 
 
 def _name_of_key(mapping: YamlNode, key: str, kind: str, name: str) -> WrittenName:
-    source, at = mapping.source, mapping.key_location(key)
+    source = mapping.source
+    at = mapping.key_location(key)
     start = source.start_offset(at)
     start += int(source.text[start : start + 1] in ("'", '"'))
     end = start + len(key)

@@ -12,42 +12,34 @@ from itertools import chain
 from string import ascii_letters, digits
 from typing import NamedTuple
 
+from grader.base.names import last_part
 from grader.base.source import Location, Source, SourceOf
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.launch.node_parameters import list_controllers
 from grader.ros.nodes.node_facts import NodeFacts, NodeFrame
 from grader.workspace.graph.bridge_rows import BridgeRow, bridge_rows
 from grader.workspace.graph.code_ends import End, opened_by_code
 from grader.workspace.graph.gazebo_topics import gazebo_topics
 from grader.workspace.graph.graph import make_graph
-from grader.workspace.graph.launch_graph import PART_UNKNOWN, GraphEnd, LaunchGraph
-from grader.workspace.graph.rviz_ends import ends_of_displays
+from grader.workspace.graph.launch_graph import CARRIES, OFFERS, PART_UNKNOWN, GraphEnd, LaunchGraph
+from grader.workspace.graph.rviz_ends import ends_of_displays, ends_of_tools, list_rviz_files
 from grader.workspace.graph.started_controllers import defined_controllers
 from grader.workspace.index.written_names import (
     Role,
     Span,
     WrittenName,
     call_end,
+    find_written,
     span_of_name,
     written_name,
 )
-from grader.workspace.model.launches import SPAWNERS
-from grader.workspace.model.own_code import CPP_ENDINGS
+from grader.workspace.model.launches import SPAWNERS, list_spawned
+from grader.workspace.model.text_files import CODE_ENDINGS
 from grader.workspace.model.workspace import Workspace
 
+_RVIZ = "rviz2"  # the program
 _GAZEBO = "Gazebo"  # owns the topics on the other side of a bridge
-_CARRIERS = {
-    "publisher": "topic",
-    "subscription": "topic",
-    "service": "service",
-    "client": "service",
-    "action server": "action",
-    "action client": "action",
-}
-_OFFERED = ("publisher", "service", "action server")
 _QUOTE = "[\"']"
 _OF_NAMES = f"{ascii_letters}{digits}_~/-"
-_CODE = (".py", *CPP_ENDINGS)
 _MAX_BEFORE = 200  # characters of a name
 
 
@@ -82,7 +74,8 @@ class GraphNames:
     """Reads the names of topics, services and actions of a workspace."""
 
     def __init__(self, workspace: Workspace, source_of: SourceOf) -> None:
-        self._workspace, self._source_of = workspace, source_of
+        self._workspace = workspace
+        self._source_of = source_of
 
     @cached_property
     def graphs(self) -> Sequence[LaunchGraph]:
@@ -92,7 +85,7 @@ class GraphNames:
     @cached_property
     def _nodes(self) -> Mapping[str, str]:
         """The full names of nodes, each with whether it is a node or a controller."""
-        kinds: dict[str, str] = {}
+        kinds = {}
         for graph in self.graphs:
             for node in graph.nodes:
                 if node.name:
@@ -108,11 +101,11 @@ class GraphNames:
         for graph in self.graphs:
             for end in chain.from_iterable(node.ends for node in graph.nodes):
                 carriers.setdefault(end.name, {})[end.carrier] = None
-        return {name: [*kinds] for name, kinds in carriers.items()}
+        return {name: list(kinds) for name, kinds in carriers.items()}
 
     def names(self) -> _Names:
         """Yield the names, and those that are not written. Raises NotDecided."""
-        read: set[Location] = {row.location for row in bridge_rows(self._workspace)}
+        read = {row.location for row in bridge_rows(self._workspace)}
         for node, facts, launch in self._own_nodes():
             for end in opened_by_code(self._workspace, node, facts, launch):
                 read.add(end.location)
@@ -121,29 +114,33 @@ class GraphNames:
         for graph in self.graphs:
             for graph_node in graph.nodes:
                 for graph_end in graph_node.ends:
-                    if graph_end.location not in read:
+                    # What its tools publish is in its file.
+                    is_of_tool = graph_node.program == _RVIZ and graph_end.kind == "publisher"
+                    if graph_end.location not in read and not is_of_tool:
                         yield from self._end_of_program(graph_end, graph_node.label)
-        for package in self._workspace.packages:
-            for path in package.rviz_files:
-                rviz = package.rviz(path)
-                node = StartedNode("rviz2", "rviz2", True, Location(package.path(path), 1, 1))
-                for graph_end in ends_of_displays(rviz, node) if rviz.fault is None else ():
-                    yield from self._end_of_program(graph_end, "RViz")
+        yield from self._in_rviz_files()
         yield from self._bridges()
+
+    def _in_rviz_files(self) -> _Names:
+        """Yield the topics that displays and tools name in the files of RViz."""
+        for rviz in list_rviz_files(self._workspace):
+            node = StartedNode("rviz2", "rviz2", True, Location(rviz.source.path, 1, 1))
+            if not rviz.fault:
+                ends = list(ends_of_displays(rviz, node))
+                for end in (*ends, *ends_of_tools(rviz, node, is_placed=True)):
+                    yield from self._end_of_program(end, "RViz")
 
     def nodes(self) -> Iterator[WrittenName]:
         """Yield the names of nodes, where launch files and code give them."""
         for _, facts, _ in self._own_nodes():
             source = self._source_of(facts.location.path)
-            span = _span_in_code(source, facts) if source is not None else None
-            if source is not None and span is not None:
+            span = _span_in_code(source, facts) if source else None
+            if source and span is not None:
                 yield written_name(source, span, "node", facts.name or "", "definition")
         for _, node in self._workspace.launches.launched:
-            name, at = node.node_name or "", node.location
-            source = self._source_of(at.path)
-            span = span_of_name(source, at, "node", name, "definition") if source and name else None
-            if source is not None and span is not None:
-                yield written_name(source, span, "node", name, "definition")
+            if node.node_name:
+                source = self._source_of(node.location.path)
+                yield from find_written(source, node.location, "node", node.node_name, "definition")
 
     def parameters(self) -> Iterator[WrittenName]:
         """Yield the parameters that nodes declare and are given, also in a section for every node.
@@ -155,23 +152,25 @@ class GraphNames:
             if launch < 0 or not declared:
                 continue
             package, _ = self._workspace.launches.roots[launch]
-            name = self._workspace.code.find_name(node) or facts.name or ""
-            given = self._workspace.parameters.read_given(package, node, name)
+            given = self._workspace.parameters.given_in_code(package, node, facts.name)
             for parameter, value in given.values.items():
                 if parameter in declared:
                     at = value.name_location
-                    yield from self._parameter(at, parameter, f"{node.package}/{node.executable}")
+                    owner = node.program_path
+                    yield from self._written(at, "parameter", parameter, "use", owner)
 
-    def _parameter(self, at: Location, name: str, owner: str) -> Iterator[WrittenName]:
-        source = self._source_of(at.path)
-        span = span_of_name(source, at, "parameter", name, "use") if source is not None else None
-        if source is not None and span is not None and source.text[slice(*span)] == name:
-            yield written_name(source, span, "parameter", name, "use", owner)
+    def _written(
+        self, at: Location, kind: str, name: str, role: Role, owner: str = ""
+    ) -> Iterator[WrittenName]:
+        """Yield a name if what begins at a place has it, and not an expression that makes it."""
+        for written in find_written(self._source_of(at.path), at, kind, name, role, owner):
+            if not written.is_made:
+                yield written
 
     def frames(self) -> _Names:
         """Yield the frames that code names, and those that it makes of parts."""
         for code in self._workspace.code.by_package.values():
-            frames = [*code.loose_frames]
+            frames = list(code.loose_frames)
             for facts in code.nodes:
                 frames += facts.frames
                 for sent in facts.transforms:
@@ -180,22 +179,23 @@ class GraphNames:
                 yield from self._frame(frame)
 
     def _frame(self, frame: NodeFrame) -> _Names:
-        at, source = frame.location, self._source_of(frame.location.path)
+        """Yield a frame that code names, or that it makes of parts of which one is known."""
         if frame.name is None:
-            yield from _frame_of_parts(frame)
+            texts = [part.text if part.kind == "text" else PART_UNKNOWN for part in frame.parts]
+            if any(text.strip(PART_UNKNOWN) for text in texts):
+                reason = "code makes a frame of parts"
+                yield ComputedName("frame", "".join(texts), frame.location, reason)
             return
-        name = frame.name.removeprefix("/")
-        span = span_of_name(source, at, "frame", name, "use") if source is not None else None
-        if source is not None and span is not None and source.text[slice(*span)] == name:
-            role: Role = "definition" if frame.use == "publishes" else "use"
-            yield written_name(source, span, "frame", name, role)
+        role: Role = "definition" if frame.use == "publishes" else "use"
+        yield from self._written(frame.location, "frame", frame.name.removeprefix("/"), role)
 
     def _own_nodes(self) -> Iterator[tuple[StartedNode, NodeFacts, int]]:
         """Yield the nodes of own code as they are started, also where no launch file does so."""
-        code, launched = self._workspace.code, set[tuple[str, str]]()
+        code = self._workspace.code
+        launched = set()
         for number, node in self._workspace.launches.launched:
             owner = self._workspace.find_package(node)
-            if owner is not None:
+            if owner:
                 launched.add((owner.name, node.executable))
             for facts in code.find_nodes(node):
                 yield node, facts, number
@@ -208,7 +208,8 @@ class GraphNames:
 
     def _end_of_code(self, end: End, facts: NodeFacts) -> _Names:
         """Yield the name of an end where code writes it, or the parameter that has it."""
-        kind, endpoint = _CARRIERS[end.kind], end.endpoint
+        kind = CARRIES[end.kind]
+        endpoint = end.endpoint
         reason = f"a {end.kind} of {end.owner} has a name that is computed"
         if endpoint.name is None:
             yield from self._computed_end(end, facts, reason)
@@ -218,19 +219,22 @@ class GraphNames:
         owner = "" if before == end.name else _owner_in_program(node, before)
         if not end.is_known and not owner:
             yield ComputedName(kind, end.name, endpoint.location, reason)
-        role: Role = "definition" if owner else _role(end.kind)
-        at, texts = endpoint.location, (endpoint.name,)
+        role = "definition" if owner else _role(end.kind)
+        at = endpoint.location
+        texts = (endpoint.name,)
         yield from self._names_at(_EndPlace(kind, before, at, texts, role, owner, reason))
 
     def _computed_end(self, end: End, facts: NodeFacts, reason: str) -> _Names:
         """Yield the name of an end that code makes of parts."""
-        kind, full = _CARRIERS[end.kind], end.name
-        span, source = self._span_of_end(end), self._source_of(end.location.path)
-        if span is not None and source is not None:
+        kind = CARRIES[end.kind]
+        full = end.name
+        span = self._span_of_end(end)
+        source = self._source_of(end.location.path)
+        if span is not None and source:
             yield from _last_part(source, span, kind, full, _role(end.kind), full)
             return
         at = self._place_of_parameter(end, facts)
-        if at is None or not end.is_known:
+        if not at or not end.is_known:
             yield ComputedName(kind, full, at or end.location, reason)
             return
         place = _EndPlace(kind, full, at, _texts(full), _role(end.kind), "", reason)
@@ -241,10 +245,11 @@ class GraphNames:
 
         A remapping may replace a name that is computed.
         """
-        parts, at = end.endpoint.parts, end.location
+        parts = end.endpoint.parts
+        at = end.location
         source = self._source_of(at.path)
         last = parts[-1] if len(parts) > 1 else None
-        if source is None or last is None or last.kind != "text" or not end.is_known:
+        if not source or not last or last.kind != "text" or not end.is_known:
             return None
         name = f"/{end.name.rpartition('/')[2]}"
         if not last.text.endswith(name):
@@ -252,15 +257,15 @@ class GraphNames:
         start = source.start_offset(at)
         written = re.compile(rf"{re.escape(last.text)}(?={_QUOTE})")
         match = written.search(source.text, start, call_end(source, start))
-        return (match.end() - len(name) + 1, match.end()) if match is not None else None
+        return (match.end() - len(name) + 1, match.end()) if match else None
 
     def _place_of_parameter(self, end: End, facts: NodeFacts) -> Location | None:
         """Return where the value of the only part of a name is written, if that is a parameter."""
-        parts, package = end.endpoint.parts, self._workspace.find_package(end.node)
-        if len(parts) != 1 or parts[0].kind != "parameter" or package is None:
+        parts = end.endpoint.parts
+        package = self._workspace.find_package(end.node)
+        if len(parts) != 1 or parts[0].kind != "parameter" or not package:
             return None
-        name = self._workspace.code.find_name(end.node) or facts.name or ""
-        given = self._workspace.parameters.read_given(package, end.node, name)
+        given = self._workspace.parameters.given_in_code(package, end.node, facts.name)
         if parts[0].text in given.values:
             return given.values[parts[0].text].location
         for parameter in facts.parameters:
@@ -275,24 +280,25 @@ class GraphNames:
                 if len(rule) > 1 and not rule[0].startswith("__") and ":" not in rule[0]:
                     yield from self._remapping(node, rule)
             if node.remaps is None:
-                at, reason = node.location, f"the remappings of {node.name} are computed"
+                at = node.location
+                reason = f"the remappings of {node.name} are computed"
                 yield ComputedName("topic", PART_UNKNOWN, at, reason)
 
     def _remapped_nodes(self) -> Iterator[StartedNode]:
         """Yield the nodes and the controllers that spawners start, with their remappings."""
         for _, node in self._workspace.launches.launched:
             yield node
-            if node.executable in SPAWNERS:
-                yield from list_controllers(node) or ()
+            yield from list_spawned(node)
 
     def _remapping(self, node: StartedNode, rule: Sequence[str]) -> _Names:
         if not node.node_name:
             node = node._replace(node_name=self._workspace.code.find_name(node) or "")
-        before, after = node.full_name(rule[0]), node.full_name(rule[1])
+        before = node.full_name(rule[0])
+        after = node.full_name(rule[1])
         kinds = self._carriers.get(after, ["topic"])
         source = self._source_of(node.location.path)
-        spans = _spans_of_rule(source, node.location, rule) if source is not None else []
-        if source is None or not spans:
+        spans = _spans_of_rule(source, node.location, rule) if source else []
+        if not source or not spans:
             for kind in kinds:
                 reason = f"a remapping of {node.name} is computed"
                 yield ComputedName(kind, after, node.location, reason)
@@ -309,7 +315,8 @@ class GraphNames:
 
     def _end_of_program(self, end: GraphEnd, opened_by: str) -> _Names:
         """Yield the name of an end of the graph where a file other than code writes it."""
-        role, texts = _role(end.kind), _texts(end.name)
+        role = _role(end.kind)
+        texts = _texts(end.name)
         if end.location in self._started:
             texts = ()
         before = self._remapped.get(end.name, {})
@@ -351,10 +358,11 @@ class GraphNames:
 
     def _row(self, row: BridgeRow) -> _Names:
         role: Role = "definition" if row.is_published else "use"
-        ros, gz = f"/{row.ros}", f"/{row.gz}"
+        ros = f"/{row.ros}"
+        gz = f"/{row.gz}"
         source = self._source_of(row.location.path)
         reason = "a bridge is given a topic that is computed"
-        if source is not None and row.location == row.ros_type_location:
+        if source and row.location == row.ros_type_location:
             span = _span_in_argument(source, row)
             if span is None:
                 yield ComputedName("topic", ros, row.location, reason)
@@ -362,16 +370,18 @@ class GraphNames:
             yield from _last_part(source, span, "topic", ros, role, ros)
             yield from _last_part(source, span, "topic", gz, role, f"{_GAZEBO} {gz}")
             return
-        at, texts = row.ros_location, _texts(row.ros)
+        at = row.ros_location
+        texts = _texts(row.ros)
         yield from self._names_at(_EndPlace("topic", ros, at, texts, role, "", reason))
-        owner, texts = f"{_GAZEBO} {gz}", _texts(row.gz)
+        owner = f"{_GAZEBO} {gz}"
+        texts = _texts(row.gz)
         yield from self._names_at(_EndPlace("topic", gz, row.location, texts, "use", owner, reason))
 
     def _names_at(self, place: _EndPlace) -> _Names:
         """Yield a name at the last part of its text, and the nodes in the parts before."""
         source = self._source_of(place.location.path)
-        span = _written_span(source, place) if source is not None else None
-        if source is None or span is None:
+        span = _written_span(source, place) if source else None
+        if not source or span is None:
             yield ComputedName(place.kind, place.owner or place.full, place.location, place.reason)
             return
         owner = place.owner or place.full
@@ -381,12 +391,13 @@ class GraphNames:
     def _nodes_in(self, source: Source, span: Span, full: str) -> Iterator[WrittenName]:
         """Yield the nodes and controllers in the parts of a name before the last one."""
         text = source.text[slice(*span)]
-        parts, every = text.split("/"), full.split("/")
+        parts = text.split("/")
+        every = full.split("/")
         start = span[0]
         for number, part in enumerate(parts[:-1]):
             above = "/".join(every[: len(every) - len(parts) + number + 1])
             kind = self._nodes.get(above)
-            if kind is not None and part == above.rpartition("/")[2]:
+            if kind is not None and part == last_part(above):
                 yield written_name(source, (start, start + len(part)), kind, part, "use")
             start += len(part) + 1
 
@@ -402,11 +413,11 @@ def _span_in_code(source: Source, facts: NodeFacts) -> Span | None:
         rf"(?:\s*+self\s*+,)?(?:\s*+node_name\s*+=)?\s*+{_QUOTE}(?P<name>{name}){_QUOTE}"
     )
     match = given.search(source.text, start)
-    return match.span("name") if match is not None else None
+    return match.span("name") if match else None
 
 
 def _role(kind: str) -> Role:
-    return "definition" if kind in _OFFERED else "use"
+    return "definition" if kind in OFFERS else "use"
 
 
 def _owner_in_program(node: StartedNode, name: str) -> str:
@@ -425,7 +436,7 @@ def _written_span(source: Source, place: _EndPlace) -> Span | None:
     first = source.start_offset(place.location)
     for text in place.texts:
         span = span_of_name(source, place.location, "topic", text, place.role)
-        if span is None or (span[0] < first and not source.path.endswith(_CODE)):
+        if span is None or (span[0] < first and not source.path.endswith(CODE_ENDINGS)):
             continue  # a key of YAML, and not the constant of a call
         start, end = span
         is_whole = source.text[slice(*span)].strip("/") == text.strip("/")
@@ -439,8 +450,8 @@ def _last_part(
     source: Source, span: Span, kind: str, full: str, role: Role, owner: str
 ) -> Iterator[WrittenName]:
     """Yield a name at the last part of its text."""
-    name = full.rpartition("/")[2]
-    if name and source.text[slice(*span)].rpartition("/")[2] == name:
+    name = last_part(full)
+    if name and last_part(source.text[slice(*span)]) == name:
         yield written_name(source, (span[1] - len(name), span[1]), kind, name, role, owner)
 
 
@@ -449,7 +460,7 @@ def _span_in_argument(source: Source, row: BridgeRow) -> Span | None:
     start = source.start_offset(row.location)
     argument = re.compile(rf"{_QUOTE}(?P<topic>/?{re.escape(row.ros)})@")
     match = argument.search(source.text, start, call_end(source, start))
-    return match.span("topic") if match is not None else None
+    return match.span("topic") if match else None
 
 
 def _spans_of_rule(source: Source, where: Location, rule: Sequence[str]) -> list[tuple[Span, Span]]:
@@ -473,15 +484,7 @@ def _spans_of_rule(source: Source, where: Location, rule: Sequence[str]) -> list
         start_tag = rf"<remap\s++from\s*+=\s*+{_QUOTE}(?P<from>{first}){_QUOTE}\s++"
         pattern = rf"{start_tag}to\s*+=\s*+{_QUOTE}(?P<to>{second}){_QUOTE}"
     start = source.start_offset(where)
-    matches = [*re.finditer(pattern, source.text)]
+    matches = list(re.finditer(pattern, source.text))
     end = call_end(source, start)
     inside = [match for match in matches if start <= match.start() < end]
     return [(match.span("from"), match.span("to")) for match in inside or matches]
-
-
-def _frame_of_parts(frame: NodeFrame) -> Iterator[ComputedName]:
-    """Yield a frame that code makes of parts, if one of them is known."""
-    texts = [part.text if part.kind == "text" else PART_UNKNOWN for part in frame.parts]
-    if any(text.strip(PART_UNKNOWN) for text in texts):
-        reason = "code makes a frame of parts"
-        yield ComputedName("frame", "".join(texts), frame.location, reason)

@@ -3,9 +3,9 @@
 import re
 from collections.abc import Iterator, Mapping
 from functools import cached_property
-from itertools import chain
 
 from grader.base import markup
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source, SourceOf
 from grader.ros.interfaces.interface_types import FieldType
 from grader.ros.nodes.node_facts import NodeProgram
@@ -19,28 +19,29 @@ from grader.workspace.index.written_names import (
     span_of_name,
     written_name,
 )
-from grader.workspace.model.own_code import CPP_ENDINGS
+from grader.workspace.model.text_files import CODE_ENDINGS, CPP_ENDINGS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.files import PathInFile, named_paths
 from grader.workspace.rules.plugin_classes import described_classes, named_classes
 from grader.workspace.rules.used_packages import used_packages
 
-_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
-_DEPENDENCY = re.compile(
+_COMMENT = on_use(r"<!--.*?(?:-->|\Z)", re.DOTALL)
+_DEPENDENCY = on_use(
     r"<(?:(?:build|buildtool|exec|run|test|doc)_(?:export_)?)?depend\b[^<>]*+>\s*+(?P<name>[\w-]++)"
 )
-_TYPE_IN_CPP = re.compile(r"\b(\w++)::(msg|srv|action)::(\w++)")
-_HEADER = re.compile(
-    r"[<\"](?P<package>\w++)/(?P<part>msg|srv|action)/(?P<name>\w++)\.h(?:pp)?[>\"]"
-)
-_TYPE, _FILE, _PROGRAM = "message type", "file", "program"
+_TYPE_IN_CPP = on_use(r"\b(\w++)::(msg|srv|action)::(\w++)")
+_HEADER = on_use(r"[<\"](?P<package>\w++)/(?P<part>msg|srv|action)/(?P<name>\w++)\.h(?:pp)?[>\"]")
+_TYPE = "message type"
+_FILE = "file"
+_PROGRAM = "program"
 
 
 class PackageNames:
     """Reads the names of what packages have."""
 
     def __init__(self, workspace: Workspace, source_of: SourceOf) -> None:
-        self._workspace, self._source_of = workspace, source_of
+        self._workspace = workspace
+        self._source_of = source_of
 
     def names(self) -> WrittenNames:
         """Yield the names. Raises NotDecided."""
@@ -63,7 +64,7 @@ class PackageNames:
     ) -> WrittenNames:
         """Yield a name in what begins at a place, if it is written there."""
         source = self._source_of(at.path)
-        if source is None:
+        if not source:
             return
         start = source.start_offset(at)
         span: Span | None = (start, start + len(name))
@@ -74,14 +75,14 @@ class PackageNames:
             end = source.text.find(")" if is_cmake else "\n", start)
             word = re.compile(rf"(?<![\w-]){re.escape(name)}(?![\w-])")
             match = word.search(source.text, start, end if end >= 0 else len(source.text))
-            span = match.span() if match is not None else None
+            span = match.span() if match else None
         if span is not None:
             yield written_name(source, span, kind, name, role, owner)
 
     def _packages(self, package: Package) -> WrittenNames:
         """Yield the name of a package, and those of the packages that its files name."""
         manifest = package.manifest
-        if manifest is not None and manifest.name:
+        if manifest and manifest.name:
             yield from self._written(manifest.name_location, "package", manifest.name, "definition")
             text = _COMMENT.sub(lambda comment: " " * len(comment[0]), manifest.source.text)
             for match in _DEPENDENCY.finditer(text):
@@ -93,21 +94,22 @@ class PackageNames:
     def _programs(self, package: Package) -> WrittenNames:
         """Yield the programs of a package, with the functions that they call."""
         code = self._workspace.code.by_package.get(package.name)
-        for program in code.programs if code is not None else ():
-            owner, at = package.name, program.location
-            yield from self._written(at, _PROGRAM, program.name, "definition", owner)
+        for program in code.programs if code else ():
+            at = program.location
+            yield from self._written(at, _PROGRAM, program.name, "definition", package.name)
             yield from self._function(package, program)
         setup = package.installation
-        for target in setup.targets if setup is not None else ():
-            if setup is not None and target.kind == "executable":
-                name, at = target.program or target.name, setup.location(target.at)
+        for target in setup.targets if setup else ():
+            if setup and target.kind == "executable":
+                name = target.program or target.name
+                at = setup.location(target.at)
                 yield from self._written(at, _PROGRAM, name, "definition", package.name)
 
     def _function(self, package: Package, program: NodeProgram) -> WrittenNames:
         """Yield the function of a program, in its file and where setup.py names it."""
         path = package.path(program.path)
         source = self._source_of(path) if program.path else None
-        if source is None:
+        if not source:
             return
         if not program.function:
             yield _of_file(path, _PROGRAM, program.name, package.name)
@@ -115,16 +117,16 @@ class PackageNames:
         name = re.escape(program.function)
         pattern = rf"(?m)^[ \t]*+(?:async[ \t]++)?(?:def|int)[ \t]++(?P<name>{name})[ \t]*+\("
         defined = re.search(pattern, source.text)
-        if defined is None:
+        if not defined:
             return
         span = defined.span("name")
         yield written_name(source, span, _PROGRAM, program.name, "definition", package.name)
         setup = self._source_of(program.location.path)
-        if setup is None or path.endswith(CPP_ENDINGS):
+        if not setup or path.endswith(CPP_ENDINGS):
             return
         start = setup.start_offset(program.location)
         used = re.compile(rf"[\w.]++:{name}").search(setup.text, start)
-        if used is not None and "\n" not in setup.text[start : used.start()]:
+        if used and "\n" not in setup.text[start : used.start()]:
             yield written_name(source, span, "function", used[0], "definition", package.name)
             yield written_name(setup, used.span(), "function", used[0], "use", package.name)
 
@@ -151,16 +153,15 @@ class PackageNames:
     def _type_of_field(
         self, package: Package, kind: FieldType, at: Location | None
     ) -> WrittenNames:
-        source = self._source_of(at.path) if at is not None else None
+        source = self._source_of(at.path) if at else None
         owner = kind.package or package.name
-        if source is None or at is None or kind.name[:1].islower():
+        if not source or not at or kind.name[:1].islower():
             return
         start = source.start_offset(at)
         written = re.compile(rf"(?:[\w/]++(?<=/))?(?P<name>{re.escape(kind.name)})\b")
         match = written.match(source.text, start)
-        if match is not None:
-            full = f"{owner}/msg/{kind.name}"
-            yield written_name(source, match.span("name"), _TYPE, full, "use")
+        if match:
+            yield written_name(source, match.span("name"), _TYPE, f"{owner}/msg/{kind.name}", "use")
 
     @cached_property
     def _headers(self) -> Mapping[tuple[str, str, str], str]:
@@ -175,8 +176,9 @@ class PackageNames:
 
     def _imported(self, name: str, at: Location) -> WrittenNames:
         """Yield a type where Python imports it, and where the file uses it."""
-        source, last = self._source_of(at.path), name.rpartition(".")[2]
-        if source is None or not source.path.endswith(".py"):
+        source = self._source_of(at.path)
+        last = name.rpartition(".")[2]
+        if not source or not source.path.endswith(".py"):
             return
         word = re.compile(rf"(?<![\w.\"'])(?:{re.escape(last)})(?![\w\"'])")
         for match in word.finditer(source.text, source.start_offset(at)):
@@ -186,7 +188,7 @@ class PackageNames:
         """Yield a file of a package, and where the file that names its path writes it."""
         path = self._workspace.installed.find_source(named.path)
         source = self._source_of(named.location.path)
-        if path is None or source is None:
+        if path is None or not source:
             return
         yield _of_file(path, _FILE, path)
         for span in _spans_of_path(source, named):
@@ -197,12 +199,11 @@ class PackageNames:
         for described in described_classes(self._workspace):
             source = self._source_of(described.location.path)
             written = None
-            if source is not None:
-                at = described.location
-                start = source.start_offset(at)
+            if source:
+                start = source.start_offset(described.location)
                 attribute = markup.attribute(source.text, start, "name")
                 written = attribute or markup.attribute(source.text, start, "type")
-            if source is not None and written is not None:
+            if source and written:
                 name = described.name
                 yield written_name(source, written.value, "plugin", name, "definition")
                 yield from self._class(described.package, described.type, name)
@@ -212,10 +213,11 @@ class PackageNames:
 
     def _components(self) -> WrittenNames:
         """Yield the classes and packages of the components that launch files load."""
-        for _, launch in self._workspace.launches.roots:
+        for launch in self._workspace.launches.outermost:
             for component in launch.components:
                 if component.package and component.plugin:
-                    at, name = component.location, component.plugin
+                    at = component.location
+                    name = component.plugin
                     yield from self._written(at, "plugin", name, "use")
                     yield from self._written(at, "package", component.package, "use")
                     yield from self._class(component.package, name, name)
@@ -226,11 +228,11 @@ class PackageNames:
         pattern = re.compile(
             rf"(?m)^[ \t]*+(?:class|struct)\s++(?:[A-Z_]++\s++)?(?P<name>{cls})\b[^;{{}}]*+\{{"
         )
-        owners = [each for each in self._workspace.packages if each.name == package]
-        sources = [self._workspace.texts.read_sources(owner, CPP_ENDINGS) for owner in owners]
-        for source in chain.from_iterable(sources):
+        owner = self._workspace.own_packages.get(package)
+        texts = self._workspace.texts
+        for source in texts.read_sources(owner, CPP_ENDINGS) if owner else ():
             match = pattern.search(source.text)
-            if match is not None:
+            if match:
                 yield written_name(source, match.span("name"), "plugin", name, "definition")
 
 
@@ -244,7 +246,7 @@ def _spans_of_path(source: Source, named: PathInFile) -> Iterator[Span]:
     """Yield where a file writes a path, or the parts of it that it joins to a folder."""
     parts = named.path.rpartition("share/")[2].split("/")[1:]
     tails = ["/".join(parts[first:]) for first in range(len(parts))]
-    if source.path.endswith((".py", *CPP_ENDINGS)):
+    if source.path.endswith(CODE_ENDINGS):
         tails = [rf"(?<=[\"'/]){re.escape(tail)}(?=[\"'])" for tail in tails if tail]
     else:
         tails = [rf"(?<=/){re.escape(tail)}(?![\w./-])" for tail in tails[:1] if tail]

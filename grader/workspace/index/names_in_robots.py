@@ -58,11 +58,11 @@ def _names_in_robot(urdf: Read, root: Element) -> WrittenNames:
         for attribute in _ATTRIBUTES:
             name = element.get(attribute)
             named = _named_by(element, attribute, joints) if name else None
-            if named is None or not name:
+            if not named or not name:
                 continue
             source, start = urdf.reading.source.element(tag)
             written = markup.attribute(source.text, start, attribute)
-            if written is not None:
+            if written:
                 yield written_name(source, written.value, named.kind, name, named.role, urdf.path)
 
 
@@ -75,7 +75,7 @@ def _named_by(element: Element, attribute: str, joints: Collection[str | None]) 
     parent = element.getparent()
     assert parent is not None
     named = _NAMED.get((str(parent.tag), str(element.tag), attribute))
-    if named is None:
+    if not named:
         return None
     if attribute == "reference" and element.get(attribute) in joints:
         return _Named("joint", "use")

@@ -4,11 +4,12 @@ They are those of arguments, properties, and macros with their parameters.
 """
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
 from grader.base import markup
+from grader.base.patterns import on_use
 from grader.base.source import Source
 from grader.ros.package.robot_file import Read
 from grader.ros.python.budget import Budget
@@ -23,15 +24,15 @@ from grader.workspace.index.written_names import (
     written_name,
 )
 
-_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
-_PIECE = re.compile(
+_COMMENT = on_use(r"<!--.*?(?:-->|\Z)", re.DOTALL)
+_PIECE = on_use(
     r"(?<!\$)\$\$++[{(]|\$\{(?P<expression>[^{}]*)\}|\$\(\s*arg\s+(?P<argument>[^\s()]+)\s*\)"
 )
-_IN_EXPRESSION = re.compile(
+_IN_EXPRESSION = on_use(
     r"\barg\(\s*['\"](?P<argument>\w+)['\"]|'[^']*'|\"[^\"]*\"|[\w)\]]\s*\.\s*\w+"
     r"|(?P<name>[^\W\d]\w*)(?!\s*=[^=])"
 )
-_PARAMETER = re.compile(r"[*]*([^\s:=*]+)(?::?=(?:\^\|?)?(?:\$\{[^{}]*\}|'[^']*'|\"[^\"]*\"|\S)*)?")
+_PARAMETER = on_use(r"[*]*([^\s:=*]+)(?::?=(?:\^\|?)?(?:\$\{[^{}]*\}|'[^']*'|\"[^\"]*\"|\S)*)?")
 _PREFIX = "xacro:"
 
 
@@ -73,9 +74,9 @@ def names_in_xacro(urdfs: Sequence[Read], others: Sequence[Source]) -> WrittenNa
 
     The owner is the path of the robot; each of the other files is on its own.
     """
-    known: dict[str, _Document] = {}
+    known = {}
     for urdf in urdfs:
-        roots: Mapping[str, XacroNode] = getattr(urdf.reading.source, "documents", {})
+        roots = getattr(urdf.reading.source, "documents", {})
         for path, root in roots.items():
             if path not in known:
                 known[path] = _read_document(root)
@@ -92,14 +93,20 @@ def names_in_xacro(urdfs: Sequence[Read], others: Sequence[Source]) -> WrittenNa
 def _names_of_owner(documents: Sequence[_Document], owner: str) -> WrittenNames:
     """Yield the names in files that are expanded together."""
     scopes = {macro.name: macro.scope for document in documents for macro in document.macros}
-    properties: set[str] = set()
+    properties = set()
     for document in documents:
         properties |= {
             defined.name for defined in document.names if defined.kind == "xacro property"
         }
     for document in documents:
         yield from _names_of_tags(document, owner, scopes)
-        yield from _names_in_expressions(document, owner, properties)
+        source = document.source
+        for used in document.loose:
+            scope = _scope_at(document.macros, used.span[0], used.name)
+            if scope:
+                yield written_name(source, used.span, "xacro parameter", used.name, "use", scope)
+            elif used.name in properties:
+                yield written_name(source, used.span, "xacro property", used.name, "use", owner)
 
 
 def _names_of_tags(document: _Document, owner: str, scopes: Mapping[str, str]) -> WrittenNames:
@@ -115,26 +122,13 @@ def _names_of_tags(document: _Document, owner: str, scopes: Mapping[str, str]) -
         )
 
 
-def _names_in_expressions(
-    document: _Document, owner: str, properties: Collection[str]
-) -> WrittenNames:
-    """Yield the names in expressions of a file: parameters of the macro around, or properties."""
-    source = document.source
-    for used in document.loose:
-        scope = _scope_at(document.macros, used.span[0], used.name)
-        if scope:
-            yield written_name(source, used.span, "xacro parameter", used.name, "use", scope)
-        elif used.name in properties:
-            yield written_name(source, used.span, "xacro property", used.name, "use", owner)
-
-
 def _read_document(root: XacroNode) -> _Document:
     source, _ = root.place.written
     macros = tuple(_macros(root))
     names: list[_XacroName] = []
     for node in walk(root):
         names += _names_in_tag(node, macros)
-    loose: list[_XacroName] = []
+    loose = []
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
     for piece in _PIECE.finditer(text):
         if piece["argument"] is not None:

@@ -6,6 +6,7 @@ from contextlib import suppress
 from fnmatch import fnmatchcase
 
 from grader.base.errors import NotDecided
+from grader.base.grouping import Strings
 from grader.workspace.graph.graph import make_graph
 from grader.workspace.graph.launch_graph import LaunchGraph, unconnected_ends
 from grader.workspace.index.names_in_graph import ComputedName
@@ -17,7 +18,7 @@ _ENDS = ("topic", "service", "action")
 _NODES = ("node", "controller")
 _SECTIONS = ("controller", "plugin section")  # which are parts of names of parameters
 _FRAMES = ("link", "frame")
-_Row = tuple[str, ...]
+_Row = Strings
 
 
 def renamed_owner(place: WrittenName, new: str) -> str:
@@ -103,7 +104,8 @@ def _rows(
         for end in node.ends:
             yield program, end.kind, name(end.carrier, end.name)
     for transform in graph.transforms:
-        at, frames = transform.location, (transform.parent, transform.child)
+        at = transform.location
+        frames = (transform.parent, transform.child)
         if at.path not in others:
             frames = name("frame", transform.parent), name("frame", transform.child)
         yield f"{number} {at.path}:{at.line}", *frames
@@ -117,7 +119,7 @@ def _renaming(places: Collection[WrittenName], new: str) -> _Renaming:
     kinds = {place.kind for place in places}
     full = {(place.kind, place.owner): renamed_owner(place, new) for place in places}
     old = {place.name for place in places}
-    programs: set[str] = set()
+    programs = set()
     for place in places:
         if place.kind == "parameter":
             package, _, executable = place.owner.partition("/")
@@ -137,7 +139,7 @@ def _renaming(places: Collection[WrittenName], new: str) -> _Renaming:
             parts = name.split("/")
             last = len(parts) if kind == "node" else len(parts) - 1
             renamed = [new if part in old else part for part in parts[:last]]
-            return "/".join([*renamed, *parts[last:]])
+            return "/".join(renamed + parts[last:])
         return full.get((kind, name), name)
 
     return rename

@@ -29,12 +29,12 @@ def _in_order(workspace: Workspace, launch: Launch) -> Iterator[StartedName]:
     first: dict[Location, StartedName] = {}
     for node in launch.nodes:
         name = workspace.code.find_name(node) or node.executable
-        detail = f"{node.package}/{node.executable}"
+        detail = node.program_path
         if node.executable in SPAWNERS:
             name = " ".join([node.executable, *(word or "..." for word in node.arguments or ())])
         first.setdefault(node.location, StartedName(name, detail, node.location))
     for component in launch.components:
-        name = (component.node.node_name if component.node is not None else "") or ""
+        name = (component.node.node_name if component.node else "") or ""
         detail = f"{component.package or '...'} {component.plugin or '...'}"
         started = StartedName(name or component.plugin or "a component", detail, component.location)
         first.setdefault(component.location, started)

@@ -8,23 +8,24 @@ from collections.abc import Collection, Iterable, Iterator
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
+from grader.base.patterns import on_use
 from grader.base.source import Location, SourceOf
 from grader.workspace.index.written_names import WrittenName
-from grader.workspace.model.own_code import CPP_ENDINGS
+from grader.workspace.model.text_files import CODE_ENDINGS
 from grader.workspace.model.workspace import Workspace
 
 _STRING = r"\"(?:[^\"\\\n]|\\.)*+\"|'(?:[^'\\\n]|\\.)*+'"
 # What a text of Python or C++ surely is no link, joint, topic or node by.
 _KEYWORD = r"\b(?:package|plugin|executable|exec|pkg|output|prefix|type|help|description)\s*+=\s*+"
-_PYTHON = re.compile(
+_PYTHON = on_use(
     rf"#[^\n]*+|(?s:\"\"\".*?\"\"\"|'''.*?''')|{_KEYWORD}[^\n]|(?P<text>{_STRING})", re.DOTALL
 )
-_CPP = re.compile(rf"//[^\n]*+|(?s:/\*.*?(?:\*/|\Z))|#include[^\n]*+|(?P<text>{_STRING})")
-_YAML = re.compile(
+_CPP = on_use(rf"//[^\n]*+|(?s:/\*.*?(?:\*/|\Z))|#include[^\n]*+|(?P<text>{_STRING})")
+_YAML = on_use(
     rf"(?<!\S)#[^\n]*+|(?P<text>{_STRING}|[^\s,\[\]{{}}\"'#:][^\s,\[\]{{}}\"':]*+)(?P<colon>\s*+:(?=\s))?"
 )
 _ATTRIBUTES = "link|joint|reference|link1|link2|(?:parent|child|base|tip)_link|from|to|topic|value"
-_XML = re.compile(
+_XML = on_use(
     rf"(?s:<!--.*?(?:-->|\Z))|\s(?:{_ATTRIBUTES})\s*+=\s*+(?P<text>{_STRING})|>\s*+(?P<content>[^\s<>][^<>]*+)(?=<)"
 )
 _LANGUAGES = {
@@ -34,8 +35,8 @@ _LANGUAGES = {
     (".urdf", ".xacro", ".srdf", ".sdf", ".world", ".launch", ".xml"): _XML,
 }
 _WITHOUT_NAMES = ("setup.py", "package.xml", "plugins.xml")
-_INSERTED = re.compile(r"\{[^{}]*+\}")
-_NAME = re.compile(rf"(?:[\w~/.-]++|{_INSERTED.pattern})++")
+_INSERTED = on_use(r"\{[^{}]*+\}")
+_NAME = on_use(rf"(?:[\w~/.-]++|{_INSERTED.pattern})++")
 _MIN_LETTERS = 3  # of a name that an f-string makes
 _KEYS = ("controller", "node", "parameter")  # kinds that may be a key of YAML
 _EVERY_NODE = "/**"  # a section of a parameter file
@@ -62,7 +63,7 @@ def words_left(
             continue
         for endings, pattern in _LANGUAGES.items():
             source = source_of(path) if path.endswith(endings) else None
-            if source is None or (name not in source.text and "{" not in source.text):
+            if not source or (name not in source.text and "{" not in source.text):
                 continue
             for word in _words(pattern, source.text):
                 if word.is_key and named.kind not in _KEYS:
@@ -79,7 +80,7 @@ def files_for_parameters(workspace: Workspace, packages: Collection[str]) -> Ite
     """
     for package in workspace.packages:
         for path in package.tree.files:
-            if path.endswith((".py", *CPP_ENDINGS)) and path not in package.launch_files:
+            if path.endswith(CODE_ENDINGS) and path not in package.launch_files:
                 if package.name in packages:
                     yield package.path(path)
             elif path.endswith((".yaml", ".yml")):

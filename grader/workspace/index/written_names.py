@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 
 from grader.base import markup
 from grader.base.extents import end_offset
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source, SourceOf
 
 Role = Literal["definition", "use"]
@@ -37,9 +38,10 @@ class WrittenName(NamedTuple):
     def covers(self, path: str, line: int, column: int) -> bool:
         """Return whether a place of a file is in the name, or just after it."""
         at = self.location
-        if (at.line, at.column) == (at.end_line, at.end_column):
+        start = (at.line, at.column)
+        end = (at.end_line, at.end_column)
+        if start == end:
             return False  # a whole file
-        start, end = (at.line, at.column), (at.end_line, at.end_column)
         return at.path == path and start <= (line, column) <= end
 
 
@@ -50,7 +52,8 @@ def written_name(
     source: Source, span: Span, kind: str, name: str, role: Role, owner: str = ""
 ) -> WrittenName:
     """Return a name at a span of a text; it is made if the text is another one."""
-    start, end = source.at(span[0]), source.at(span[1])
+    start = source.at(span[0])
+    end = source.at(span[1])
     location = start._replace(end_line=end.line, end_column=end.column)
     is_made = source.text[slice(*span)] != name
     return WrittenName(kind, name, role, location, owner, is_made)
@@ -72,15 +75,15 @@ _USUAL = {
     "plugin": ("plugin",),
 }
 _IN_XML = ("name", "reference", "link", "joint", "link1", "link2", "value")
-_ATTRIBUTE_START = re.compile(r"""[^\s=<>"'/]++\s*+=\s*+(["'])""")
-_TOKEN_OF_CALL = re.compile(
+_ATTRIBUTE_START = on_use(r"""[^\s=<>"'/]++\s*+=\s*+(["'])""")
+_TOKEN_OF_CALL = on_use(
     r'''(?P<text>(?i:[rbuf]{0,2})(?:"""(?s:(?:[^\\]|\\.)*?)"""|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'))'''
     r"|(?P<open>[\[({])|(?P<close>[\])}])|(?P<keyword>(?<!\w)\w++)\s*+=(?!=)|(?P<comment>#[^\n]*|//[^\n]*)|;"
 )
-_WORD = re.compile(r"\b[A-Za-z_]\w*+")
-_LINE = re.compile(r"(?P<indent> *)(?P<dash>- )?[^\s#]")  # of YAML, that is no comment
-_EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)|\{[^{}]*\}")
-_QUOTES = re.compile(r'''(?i:[rbuf]{0,2}|u8)("""|\'\'\'|"|')''')
+_WORD = on_use(r"\b[A-Za-z_]\w*+")
+_LINE = on_use(r"(?P<indent> *)(?P<dash>- )?[^\s#]")  # of YAML, that is no comment
+_EXPRESSION = on_use(r"\$\{[^{}]*\}|\$\([^()]*\)|\{[^{}]*\}")
+_QUOTES = on_use(r'''(?i:[rbuf]{0,2}|u8)("""|\'\'\'|"|')''')
 
 
 def span_of_name(source: Source, where: Location, kind: str, name: str, role: Role) -> Span | None:
@@ -100,6 +103,15 @@ def span_of_name(source: Source, where: Location, kind: str, name: str, role: Ro
     return _in_markup(source, start, kind, name)
 
 
+def find_written(
+    source: Source | None, where: Location, kind: str, name: str, role: Role, owner: str = ""
+) -> WrittenNames:
+    """Yield a name, or the expression that makes it, if what begins at a place has it."""
+    span = span_of_name(source, where, kind, name, role) if source else None
+    if source and span is not None:
+        yield written_name(source, span, kind, name, role, owner)
+
+
 def _part(text: str, span: Span, name: str) -> Span | None:
     """Return the part of a written value that is a name, or all of it where it makes the name."""
     start, end = span
@@ -110,11 +122,11 @@ def _part(text: str, span: Span, name: str) -> Span | None:
     if "$" in written or "{" in written:
         plain = _EXPRESSION.sub(lambda expression: "$" * len(expression[0]), written)
         alone = re.search(rf"(?<!\S)/?({re.escape(bare)})(?!\S)", plain) if bare else None
-        if alone is None:
+        if not alone:
             return span
         return start + alone.start(1), start + alone.end(1)
     match = re.search(rf"(?<![\w.-]){re.escape(bare)}(?![\w-]|\.\w)", written) if bare else None
-    if match is None:
+    if not match:
         return None
     slash = name.startswith("/") and written.startswith("/", max(0, match.start() - 1))
     return start + match.start() - int(slash and match.start() > 0), start + match.end()
@@ -128,7 +140,7 @@ def _in_markup(source: Source, start: int, kind: str, name: str) -> Span | None:
     if text[start] == "<":
         return _in_tag(text, start, kind, name)
     opened = _ATTRIBUTE_START.match(text, start)
-    if opened is None:
+    if not opened:
         return _part(text, (start, end_offset(source, start)), name)
     end = text.find(opened[1], opened.end())
     return _part(text, (opened.end(), end), name) if end >= 0 else None
@@ -158,12 +170,12 @@ def _values_in_tag(text: str, start: int, kind: str) -> list[Span]:
     if kind == _STARTED:
         values = [spans["name"]] if "name" in spans else []
     else:
-        order = [key for key in (*_USUAL.get(kind, ()), *_IN_XML) if key in spans]
+        order = [key for key in _USUAL.get(kind, ()) + _IN_XML if key in spans]
         values = [spans[key] for key in dict.fromkeys([*order, *spans])]
     head, is_empty = markup.head_end(text, start)
     if not is_empty:
         content = re.compile(r"\s*([^<]*?)\s*(?=<)").match(text, head)
-        if content is not None and content[1]:
+        if content and content[1]:
             values.append(content.span(1))
     return values
 
@@ -172,14 +184,15 @@ def _passed_in_element(text: str, start: int, name: str) -> Span | None:
     end = min(markup.element_end(text, start), start + _MAX_CALL)
     passed = re.compile(rf"<arg\b[^<>]*?\bname\s*=\s*[\"']({re.escape(name)})[\"']")
     match = passed.search(text, start, end)
-    return match.span(1) if match is not None else None
+    return match.span(1) if match else None
 
 
 # --- YAML
 
 
 def _in_yaml(source: Source, start: int, name: str) -> Span | None:
-    text, end = source.text, end_offset(source, start)
+    text = source.text
+    end = end_offset(source, start)
     span = _without_quotes(text, (start, end))
     if text[slice(*span)] == name:
         return span
@@ -191,7 +204,7 @@ def _in_yaml(source: Source, start: int, name: str) -> Span | None:
 
 def _without_quotes(text: str, span: Span) -> Span:
     opened = _QUOTES.match(text, span[0])
-    if opened is None or opened.end() > span[1]:
+    if not opened or opened.end() > span[1]:
         return span
     width = len(opened[1])
     is_closed = text.endswith(opened[1], opened.end(), span[1])
@@ -205,10 +218,10 @@ def _key_above(text: str, start: int, name: str) -> Span | None:
     around, is_item = start - line_start, False  # how far a line around is indented at most
     for _ in range(_MAX_LINES):
         line = _LINE.match(text, line_start)
-        if line is not None and len(line["indent"]) <= around:
+        if line and len(line["indent"]) <= around:
             is_beside = is_item and line["dash"] and len(line["indent"]) == around
             match = key.match(text, line.end("indent"))
-            if match is not None and match.end() <= start and not is_beside:
+            if match and match.end() <= start and not is_beside:
                 return match.span(2)
             if not is_beside:
                 is_item = bool(line["dash"])
@@ -223,17 +236,18 @@ def _key_above(text: str, start: int, name: str) -> Span | None:
 
 
 def _in_code(source: Source, start: int, kind: str, name: str) -> Span | None:
-    text, end = source.text, end_offset(source, start)
+    text = source.text
+    end = end_offset(source, start)
     if text.startswith("class ", start):
         return None  # a parameter that every node has
-    if _QUOTES.match(text, start) is not None:
+    if _QUOTES.match(text, start):
         return _part(text, _without_quotes(text, (start, end)), name)
     if kind == "xacro argument":
         return _given_to_xacro(text, start, name)
     key = re.compile(rf"[\"']({re.escape(name)})[\"']\s*:\s*[\[(]?\Z")
     at = max(0, start - len(name) - _MAX_KEY)
     before = key.search(text[at:start])
-    if before is not None:
+    if before:
         return at + before.start(1), at + before.end(1)
     in_call = _in_call(text, start, kind, name)
     return in_call or _constant(source, start, name) or (start, end)
@@ -259,8 +273,8 @@ def _in_call(text: str, start: int, kind: str, name: str) -> Span | None:
 
     It is in the usual argument if several are; else it is the first that has it as a word.
     """
-    first: Span | None = None
-    word: Span | None = None
+    first = None
+    word = None
     for keyword, span in _texts_in_call(text, start):
         part = _part(text, span, name)
         if part is None or text[slice(*part)].strip("/") != name.strip("/"):
@@ -279,10 +293,10 @@ def _in_call(text: str, start: int, kind: str, name: str) -> Span | None:
 def _given_to_xacro(text: str, start: int, name: str) -> Span | None:
     """Return where a command gives xacro an argument, `name:=`, or a table of arguments has it."""
     given = re.compile(rf"(?<![\w.-]){re.escape(name)}(?=\s*:=)")
-    keys: list[Span] = []
+    keys = []
     for _, span in _texts_in_call(text, start):
         match = given.search(text, *span)
-        if match is not None:
+        if match:
             return match.span()
         keys += [span] if text[slice(*span)] == name else []
     return keys[0] if keys else None
@@ -293,12 +307,15 @@ def _texts_in_call(text: str, start: int) -> Iterator[tuple[str, Span]]:
 
     In C++, it is all up to the end of a statement.
     """
-    depth, keyword, has_opened = 0, "", False
+    depth = 0
+    keyword = ""
+    has_opened = False
     for token in _TOKEN_OF_CALL.finditer(text, start, start + _MAX_CALL):
         if token["text"]:
             yield keyword, _without_quotes(text, token.span())
         elif token["open"]:
-            depth, has_opened = depth + 1, True
+            depth = depth + 1
+            has_opened = True
         elif token["close"]:
             depth -= 1
         elif token["keyword"] and depth == 1:
@@ -312,7 +329,8 @@ def call_end(source: Source, start: int) -> int:
 
     Without one it is the end of the text.
     """
-    text, depth = source.text, 0
+    text = source.text
+    depth = 0
     if text[start : start + 1] == "<":
         return markup.element_end(text, start)
     for token in _TOKEN_OF_CALL.finditer(text, start):
@@ -324,7 +342,7 @@ def call_end(source: Source, start: int) -> int:
 
 def make_reader(read: Callable[[str], bytes | None]) -> SourceOf:
     """Return what gives the texts of files by their paths, and reads each file once."""
-    known: dict[str, Source | None] = {}
+    known = {}
 
     def source(path: str) -> Source | None:
         if path not in known:

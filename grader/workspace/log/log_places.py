@@ -1,80 +1,65 @@
 """Where the files of a workspace say why a message of a log was said, besides findings of rules."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterator
+from itertools import pairwise
 
+from grader.base.errors import NotDecided
+from grader.base.names import last_part
+from grader.base.patterns import on_use
 from grader.base.source import Location
-from grader.ros.known.output_rows import OutputPlace, OutputRow
+from grader.base.text import enumerated, quoted
 from grader.ros.known.released import is_released
+from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
+from grader.workspace.graph.launch_graph import GraphTransform
 from grader.workspace.graph.transform_edges import edges_in
-from grader.workspace.log.log_messages import LogMessage
+from grader.workspace.log.known_messages import KnownMessage, PlacedAnswer
+from grader.workspace.log.robot_places import (
+    find_hardware_without_plugin,
+    find_invalid_inertias,
+    find_systems_without_states,
+)
+from grader.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.workspace.opening.opened import OpenedWorkspace
 
-_MAX_FRAMES = 30  # of a traceback
-_FRAME = re.compile(
-    r'File "(?P<path>[^"]{1,400})", line (?P<line>[0-9]{1,7}), in (?P<function>\S{1,200})'
+_PACKAGES = on_use(r"^[ \t]*+packages[ \t]*+=", re.MULTILINE)
+_DESCRIPTION = "robot_description"
+_QUOTED_DESCRIPTION = on_use(rf"[\"']{_DESCRIPTION}[\"']")
+_COMMAND = on_use(r"\bCommand\(")
+_TEXTS = (
+    *(".urdf", ".xacro", ".sdf", ".world", ".srdf", ".rviz", ".yaml", ".yml", ".xml", ".py"),
+    *(".txt", ".cpp", ".hpp", ".h"),
 )
-_INSTALLED = re.compile(r"/(?:install|build)/(?P<package>[\w-]{1,100})/(?P<path>\S[^\n]{0,400})")
-_MODULES = re.compile(r"(?:site|dist)-packages/")
-_PACKAGES = re.compile(r"^[ \t]*+packages[ \t]*+=", re.MULTILINE)
-_COMMAND = re.compile(r"\bCommand\(")
+_MAX_PUBLISHERS = 3  # of a frame, that are named
 _MAX_TEXT = 512 * 1024  # bytes of a file in which a line is searched
 
 
-class _PlacedAnswer(NamedTuple):
-    """What explains a message at a place of the workspace."""
-
-    location: Location
-    text: str
-
-
-class KnownMessage(NamedTuple):
-    """A message of a log that a row knows, with the names in it."""
-
-    message: LogMessage
-    row: OutputRow
-    groups: Mapping[str, str]
-
-    def said(self, **more: str) -> str:
-        """Return what the row says of a place, with the names of the message and others."""
-        return self.row.otherwise.format_map({**self.groups, **more})
-
-
-def placed_answers(opened: OpenedWorkspace, known: KnownMessage) -> Sequence[_PlacedAnswer]:
+def search_place(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[PlacedAnswer]:
     """Return what the place of a row says of a message; nothing where the files do not prove it.
 
     Raises NotDecided where the budget of the workspace is spent.
     """
-    search = _SEARCHES.get(known.row.place)
-    if search is None:
-        return ()
-    return [*search(opened, known)]
+    place = known.row.place
+    if place in _PLACES:
+        yield from map(known.placed, _PLACES[place](opened, known))
+    elif place in _SEARCHES:
+        yield from _SEARCHES[place](opened, known)
 
 
-def _source_path(opened: OpenedWorkspace, path: str) -> str | None:
-    """Return the file of the workspace that a path of a log means, such as one below install/.
-
-    Each is looked for where a build copies it from, then by its longest end.
-    """
-    files = opened.whole_tree.files
-    match = _INSTALLED.search(path)
-    for package in opened.workspace.packages if match is not None else ():
-        assert match is not None
-        if package.name != match["package"]:
-            continue
-        inside = match["path"]
-        source = package.installed.get(inside) or _MODULES.split(inside)[-1]
-        if package.path(source) in files:
-            return package.path(source)
-    parts = path.strip("/").split("/")
-    ends = ("/".join(parts[start:]) for start in range(max(0, len(parts) - 20), len(parts) - 1))
-    return next((end for end in ends if end in files), None)
+def _find_text(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[Location]:
+    """Yield the first place of a text with the names of a message in each file of the packages."""
+    names = {group: re.escape(name) for group, name in known.groups.items()}
+    text = re.compile(known.row.key.format_map(names))
+    for package in opened.packages:
+        for source in opened.workspace.texts.read_sources(package, _TEXTS):
+            match = text.search(source.text)
+            if match:
+                yield source.at(match.start())
 
 
-def _of_package(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_PlacedAnswer]:
-    """Yield that a package is not built, or that it is not installed and a launch file needs it."""
+def _of_package(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[PlacedAnswer]:
+    """Yield that a package is ignored or not built, or that it is not installed and needed."""
     name = known.groups["package"]
     for package in opened.packages:
         if name == package.name:
@@ -83,118 +68,151 @@ def _of_package(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_Place
                 f"the package is in {folder}, so it is not built, or install/setup.bash is not "
                 "sourced in this terminal"
             )
-            yield _PlacedAnswer(Location(package.path(MANIFEST), 1, 1), text)
+            if package.ignored_by:
+                text = f"colcon does not build {quoted(name)} because of this file: remove it"
+            path = package.ignored_by or package.path(MANIFEST)
+            yield PlacedAnswer(Location(path, 1, 1), text)
             return
     releases = opened.workspace.releases
-    if not is_released(name, releases):
-        return
     distro = releases[0] if len(releases) == 1 else "DISTRO"
-    apt = f"sudo apt install ros-{distro}-{name.replace('_', '-')}"
+    text = f"neither the workspace nor ROS 2 {distro.title()} has a package {quoted(name)}"
+    if is_released(name, releases):
+        apt = f"sudo apt install ros-{distro}-{name.replace('_', '-')}"
+        text = f"the package {quoted(name)} is not installed: {apt}"
     for package, place in _find_uses(opened, name):
-        text = f"the package {name!r} is not installed: {apt}"
-        if not package.depends_on(name):
-            text += f"; package.xml of {package.name!r} does not declare it"
-        yield _PlacedAnswer(place, text)
-        return
+        lacking = f"; package.xml of {quoted(package.name)} does not declare it"
+        is_declared = package.depends_on(name) or not is_released(name, releases)
+        yield PlacedAnswer(place, text if is_declared else text + lacking)
 
 
 def _find_uses(opened: OpenedWorkspace, name: str) -> Iterator[tuple[Package, Location]]:
     """Yield the packages that start a node of a package, or whose builds look for it."""
-    for package, node in opened.workspace.launches.nodes:
+    for package, node in opened.workspace.launches.placed_nodes:
         if node.package == name:
             yield package, node.location
     sought = re.compile(rf"(?i)\bfind_package[ \t]*+\([ \t]*+{re.escape(name)}(?![\w-])")
     for package in opened.packages:
         text = package.tree.read(CMAKE, _MAX_TEXT)
         place = _line_with(sought, package.path(CMAKE), text) if text is not None else None
-        if place is not None:
+        if place:
             yield package, place
 
 
-def _of_parameter(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_PlacedAnswer]:
+def _find_parameter(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[Location]:
     """Yield where a parameter is missing: the section around it is there."""
     *above, last = known.row.key.split("/")
     keys = [part.format_map(known.groups) for part in above]
-    for _, tree in opened.workspace.installed.trees:
+    for tree in opened.workspace.installed.trees:
         section = tree.get(*keys)
         name = last.format_map(known.groups)
-        if section is None or not isinstance(section.value, dict) or name in section.value:
+        if not section or not isinstance(section.value, dict) or name in section.value:
             continue
-        if name != last and tree.get(name) is None:
+        if name != last and keys == above and not tree.get(name):
             continue  # the file says nothing of it
-        yield _PlacedAnswer(tree.key_location(*keys), known.said())
+        yield tree.key_location(*keys)
 
 
-def _of_traceback(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_PlacedAnswer]:
-    """Yield the last line of a traceback that is in a file of the workspace, with its text."""
-    places = []
-    for match in [*_FRAME.finditer(known.message.text)][-_MAX_FRAMES:]:
-        path = _source_path(opened, match["path"])
-        source = opened.source(path) if path is not None else None
-        if source is None:
-            continue
-        line = " ".join(source.line(int(match["line"])).split())
-        # Python prints the line: the file is the one that ran if it is the same.
-        if line and known.message.text[match.end() :].lstrip().startswith(line):
-            places.append(Location(source.path, int(match["line"]), 1))
-    if places:
-        yield _PlacedAnswer(places[-1], known.said())
-
-
-def _of_programs(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_PlacedAnswer]:
-    """Yield that a build of a package installs no program in the folder of its programs."""
-    name = known.groups["package"]
-    folder = f"lib/{name}"
-    for package in opened.packages:
-        installation = package.installation
-        if package.name != name or installation is None:
-            continue
-        place = Location(installation.source.path, 1, 1)
-        paths = (*package.installed, *installation.programs)
-        if any(path.startswith(f"{folder}/") for path in paths):
-            continue
-        if package.is_cmake and not installation.unknown:
-            reason = f"CMakeLists.txt has no install(TARGETS ... DESTINATION {folder})"
-            yield _PlacedAnswer(place, known.said(reason=reason))
-        elif not package.is_cmake and installation.scripts_folder != folder:
-            reason = f"setup.cfg has no install_scripts=$base/{folder}"
-            yield _PlacedAnswer(place, known.said(reason=reason))
-
-
-def _of_module(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_PlacedAnswer]:
+def _find_packages_of_module(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[Location]:
     """Yield that setup.py does not install a module that its package has."""
     path = known.groups["module"].replace(".", "/")
     for package in opened.packages:
         is_there = f"{path}.py" in package.tree.files or f"{path}/__init__.py" in package.tree.files
-        setup, installation = package.tree.read(SETUP, _MAX_TEXT), package.installation
-        if not is_there or setup is None or installation is None:
+        setup = package.tree.read(SETUP, _MAX_TEXT)
+        installation = package.installation
+        if not is_there or setup is None or not installation:
             continue
         if known.groups["module"] in installation.packages:
             continue
         place = _line_with(_PACKAGES, package.path(SETUP), setup)
-        if place is not None and "/" in path:
-            yield _PlacedAnswer(place, known.said())
+        if place and "/" in path:
+            yield place
 
 
 def _line_with(pattern: "re.Pattern[str]", path: str, data: bytes) -> Location | None:
     text = data.decode("utf-8", "replace")
     match = pattern.search(text)
-    if match is None:
+    if not match:
         return None
     return Location(path, text.count("\n", 0, match.end()) + 1, 1)
 
 
-def _of_spaced_path(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_PlacedAnswer]:
-    """Yield where a launch file gives a command a path that has a space on this machine."""
-    path = _source_path(opened, known.groups["path"])
-    if path is None or " " not in known.groups["path"]:
+def _find_frame(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[Location]:
+    """Yield the Fixed Frame of RViz, if nothing publishes it that launch files may start."""
+    frame = known.groups["frame"]
+    if not known.row.otherwise or opened.workspace.launches.has_more_nodes:
         return
-    name = path.rpartition("/")[2]
+    if _list_edges(opened, frame):
+        return
+    fixed = re.compile(rf"^ *+Fixed Frame: {re.escape(frame)}$", re.MULTILINE)
+    for path in opened.whole_tree.files:
+        source = opened.source(path) if path.endswith(".rviz") else None
+        match = fixed.search(source.text) if source else None
+        if source and match:
+            yield source.at(match.end())
+
+
+def _find_robot_parameter(opened: OpenedWorkspace, _: KnownMessage) -> Iterator[Location]:
+    """Yield where a launch file gives the text of a robot without saying that it is a text."""
+    for package in opened.packages:
+        for source in opened.workspace.texts.launch_sources(package):
+            match = _QUOTED_DESCRIPTION.search(source.text)
+            if match and "ParameterValue" not in source.text:
+                yield source.at(match.start())
+
+
+def _of_manager(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[PlacedAnswer]:
+    """Yield the spawners that ask another controller manager than their launch file starts."""
+    asked = known.groups["manager"].removesuffix("/list_controllers")
+    for launch in opened.workspace.launches.outermost:
+        managers = _find_managers(launch)
+        for name, at in managers.items() if asked not in managers else ():
+            text = (
+                f"the spawner asks {asked}, but the controller manager is {name} "
+                f"({at.file_and_line}): give both one namespace, or use --controller-manager"
+            )
+            for node in launch.nodes:
+                if node.executable in SPAWNERS:
+                    yield PlacedAnswer(node.location, text)
+
+
+def _find_managers(launch: Launch) -> dict[str, Location]:
+    """Return the places of the controller managers that a launch file starts, by their names."""
+    managers = {}
+    for node in launch.nodes:
+        if node.executable == CONTROL_NODE and node.namespace is not None:
+            managers[node.full_name(node.node_name or MANAGER)] = node.location
+    return managers
+
+
+def _of_description(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[PlacedAnswer]:
+    """Yield the programs that read a robot from a topic that their launch file does not publish."""
+    asked = known.groups.get("topic", _DESCRIPTION)
+    for launch in opened.workspace.launches.outermost:
+        published = {}
+        for node in launch.nodes:
+            if node.is_state_publisher:
+                published[node.topic(_DESCRIPTION)] = node.location
+        for node in launch.nodes if published and None not in published else ():
+            words = dict(pairwise([*(node.arguments or ()), ""]))
+            read = [node.topic(asked), node.topic(f"~/{asked}")]
+            spawned = (words.get("-topic") or "").strip("/")
+            is_reader = spawned == asked or node.executable == CONTROL_NODE
+            if is_reader and published.keys().isdisjoint(read):
+                topics = [f"{name} ({at.file_and_line})" for name, at in published.items()]
+                text = f"{node.executable} reads {read[0]}; the robot is on {enumerated(topics)}"
+                yield PlacedAnswer(node.location, text)
+
+
+def _find_spaced_commands(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[Location]:
+    """Yield where a launch file gives a command a path that has a space on this machine."""
+    name = last_part(known.groups["path"])
+    if " " not in known.groups["path"]:
+        return
     for package in opened.packages:
         for source in opened.workspace.texts.launch_sources(package):
             match = _COMMAND.search(source.text) if name in source.text else None
-            if match is not None:
-                yield _PlacedAnswer(source.at(match.start()), known.said())
+            if match:
+                yield source.at(match.start())
 
 
 def paths_of_publishers(opened: OpenedWorkspace, frame: str) -> frozenset[str]:
@@ -202,24 +220,52 @@ def paths_of_publishers(opened: OpenedWorkspace, frame: str) -> frozenset[str]:
 
     Raises NotDecided where the budget of the workspace is spent.
     """
-    workspace = opened.workspace
-    paths = set[str]()
-    for number, (_, launch) in enumerate(workspace.launches.roots):
-        edges = [edge for edge in edges_in(workspace, number) if frame in (edge.parent, edge.child)]
-        places = {edge.location[:2] for edge in edges}
-        for node in launch.nodes:
-            if node.location[:2] in places:
-                given = [workspace.installed.find_source(one.path) for one in node.parameters or ()]
-                paths.update(path for path in given if path is not None)
-    return frozenset(paths)
+    places = {edge.location[:2] for edge in _list_edges(opened, frame)}
+    paths = set()
+    for node in opened.workspace.launches.nodes:
+        for given in node.parameters or () if node.location[:2] in places else ():
+            paths.add(opened.workspace.installed.find_source(given.path))
+    return frozenset(path for path in paths if path is not None)
 
 
-_Search = Callable[[OpenedWorkspace, KnownMessage], Iterator[_PlacedAnswer]]
-_SEARCHES: Mapping[OutputPlace, _Search] = {
+def say_publishers(opened: OpenedWorkspace, frame: str) -> str:
+    """Return what the launch files start that publishes a frame, as a sentence after another."""
+    try:
+        edges = _list_edges(opened, frame)
+    except NotDecided:
+        return ""
+    by = dict.fromkeys(f"{edge.by} ({edge.location.file_and_line})" for edge in edges)
+    if by:
+        return f" {quoted(frame)} is published by {enumerated(by, _MAX_PUBLISHERS)}."
+    return f" Nothing that is known of the launch files publishes {quoted(frame)}."
+
+
+def _list_edges(opened: OpenedWorkspace, frame: str) -> list[GraphTransform]:
+    """Return the transforms with a frame that launch files have published. Raises NotDecided."""
+    edges = []
+    for number, _ in enumerate(opened.workspace.launches.roots):
+        for edge in edges_in(opened.workspace, number):
+            if frame in (edge.parent, edge.child):
+                edges.append(edge)
+    return edges
+
+
+_Search = Callable[[OpenedWorkspace, KnownMessage], Iterator[PlacedAnswer]]
+_SEARCHES = {
     "package": _of_package,
-    "parameter": _of_parameter,
-    "traceback": _of_traceback,
-    "module": _of_module,
-    "programs": _of_programs,
-    "spaced path": _of_spaced_path,
+    "manager": _of_manager,
+    "description": _of_description,
+}
+_Find = Callable[[OpenedWorkspace, KnownMessage], Iterator[Location]]
+# The places of which the row says what is wrong there.
+_PLACES = {
+    "parameter": _find_parameter,
+    "module": _find_packages_of_module,
+    "spaced path": _find_spaced_commands,
+    "robot parameter": _find_robot_parameter,
+    "frame": _find_frame,
+    "text": _find_text,
+    "hardware": find_hardware_without_plugin,
+    "states": find_systems_without_states,
+    "inertia": find_invalid_inertias,
 }

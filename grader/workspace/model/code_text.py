@@ -3,17 +3,19 @@
 import posixpath
 import re
 
-_PYTHON = re.compile(
+from grader.base.patterns import on_use
+
+_PYTHON = on_use(
     r'#[^\n]*|"""(?:[^"\\]|\\.|"(?!""))*+(?:"""|\Z)|"(?:[^"\\\n]|\\.)*+"?'
     r"|'''(?:[^'\\]|\\.|'(?!''))*+(?:'''|\Z)|'(?:[^'\\\n]|\\.)*+'?",
     re.DOTALL,
 )
-_CPP = re.compile(  # a number comes before what may be a text: 10'000
+_CPP = on_use(  # a number comes before what may be a text: 10'000
     r"\b[0-9](?:'?[\w.])*+|"
     r'//[^\n]*|/\*(?:[^*]|\*(?!/))*+(?:\*/|\Z)|"(?:[^"\\\n]|\\.)*+"?|\'(?:[^\'\\\n]|\\.)*+\'?',
     re.DOTALL,
 )
-_FILLED = re.compile(r"\{[^{}]*+\}|(\S)")
+_FILLED = on_use(r"\{[^{}]*+\}|(\S)")
 
 
 def code_alone(text: str, path: str) -> str:
@@ -31,7 +33,8 @@ def is_script(path: str) -> bool:
 
 
 def _blank(match: re.Match[str]) -> str:
-    written, start = match[0], match.start()
+    written = match[0]
+    start = match.start()
     if written[0].isdigit():
         return written
     if written[0] in "\"'" and "f" in match.string[max(start - 2, 0) : start].lower():

@@ -1,32 +1,32 @@
 """The parameter files that nodes and controllers are given, and the parameters in these."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache, cached_property, partial
 
+from grader.base.records import Record
 from grader.ros.installation.places import PREFIX, share_parts
 from grader.ros.launch.launch_model import GivenParameters, StartedNode
 from grader.ros.launch.node_parameters import (
     FileTables,
     NodeParameters,
     collect_parameters,
-    list_controllers,
     read_tables,
 )
 from grader.ros.package.installed_files import are_installs_known, meant_file, open_meant
 from grader.ros.package.package import Package
 from grader.workspace.model.installed_yaml import InstalledFiles
 from grader.workspace.model.known_robots import Robots
-from grader.workspace.model.launches import MANAGER, SPAWNERS, Launches
+from grader.workspace.model.launches import MANAGER, Launches, list_spawned
 from grader.workspace.model.own_code import OwnCode
 from grader.workspace.model.text_files import FILES_A_PART, MAX_YAML, TextFiles
 from grader.workspace.model.workspace_folder import WorkspaceFolder
 
+_OpenedFile = tuple[bytes, str]  # with its path
+
 _BYTES_A_PART = 64  # of a file that a node is given, which are charged as one part
 
 
-@dataclass(frozen=True, eq=False)
-class GivenFiles:
+class GivenFiles(Record):
     """The parameter files that nodes and controllers are given, and the parameters in these."""
 
     folder: WorkspaceFolder
@@ -43,7 +43,7 @@ class GivenFiles:
         The keys are the paths of the files in the workspace.
         """
         nodes: dict[str, list[StartedNode]] = {}
-        for _, node in self.launches.nodes:
+        for node in self.launches.nodes:
             for path in self.files_given(node):
                 nodes.setdefault(path, []).append(node)
         return nodes
@@ -82,9 +82,9 @@ class GivenFiles:
 
         The keys are the paths of the files in the workspace.
         """
-        given = [*self.robots.given_in_gazebo]
-        for _, node in self.launches.nodes:
-            for controller in _spawned_by(node):
+        given = list(self.robots.given_in_gazebo)
+        for node in self.launches.nodes:
+            for controller in list_spawned(node):
                 given += controller.parameters or ()
         paths = {self.installed.find_source(each.path) for each in given if each.path}
         return frozenset(path for path in paths if path is not None)
@@ -108,47 +108,52 @@ class GivenFiles:
         read = partial(self._read_tables, are_keys_meant=self.folder.reads_meant)
         return collect_parameters(node, partial(self.open_given, package), name, read)
 
+    def given_in_code(
+        self, package: Package, node: StartedNode, name: str | None = None
+    ) -> NodeParameters:
+        """Return the same for a node to which its code gives a name. Raises NotDecided."""
+        return self.read_given(package, node, self.code.find_name(node) or name or "")
+
     @cached_property
     def _read_tables(self) -> Callable[..., FileTables]:
         """A reader of parameter files that reads each once."""
         return cache(read_tables)
 
-    def open(self, package: Package, path: str) -> tuple[bytes, str] | None:
+    def open(self, package: Package, path: str) -> _OpenedFile | None:
         """Return a parameter file, as `open_meant` does. Raises NotDecided."""
         return self._charged(self._search(package, path, False))
 
-    def open_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
+    def open_given(self, package: Package, path: str) -> _OpenedFile | None:
         """Return a parameter file that a launch file of a package gives, as `open_meant` does.
 
         There is nothing in one that surely is nowhere. Raises NotDecided.
         """
         return self._charged(self._search(package, path, True))
 
-    def _charged(self, file: tuple[bytes, str] | None) -> tuple[bytes, str] | None:
+    def _charged(self, file: _OpenedFile | None) -> _OpenedFile | None:
         """Return a file, and charge that a node is given it."""
         size = len(file[0]) if file is not None else 0
         self.folder.charge(1 + size // _BYTES_A_PART)
         return file
 
     @cached_property
-    def _search(self) -> Callable[[Package, str, bool], tuple[bytes, str] | None]:
+    def _search(self) -> Callable[[Package, str, bool], _OpenedFile | None]:
         """A search for parameter files that searches each once."""
         return cache(self._find)
 
-    def _find(self, package: Package, path: str, is_given: bool) -> tuple[bytes, str] | None:
+    def _find(self, package: Package, path: str, is_given: bool) -> _OpenedFile | None:
         """Return a parameter file; one that a launch file gives may be nowhere."""
         self.folder.charge(len(self.folder.tree.files) // FILES_A_PART)
-        return self._find_given(package, path) if is_given else open_meant(package, path)
-
-    def _find_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
+        if not is_given:
+            return open_meant(package, path)
         opened = open_meant(package, path, absent_are_empty=True)
         owner = package.find(share_parts(f"{PREFIX}/{path}")[0])
         is_empty = opened is None or not opened[0]
-        if self.folder.reads_meant and owner is not None and is_empty:
+        if self.folder.reads_meant and owner and is_empty:
             meant = meant_file(owner, path)
             if meant:
                 return owner.tree.read(meant, MAX_YAML) or b"", owner.path(meant)
-        if opened is None and owner is not None and are_installs_known(owner):
+        if opened is None and owner and are_installs_known(owner):
             return (b"", path) if self.texts.is_nowhere(owner, path) else None
         return opened
 
@@ -157,15 +162,10 @@ def _meant_source(folder: WorkspaceFolder, path: str) -> str:
     """Return the file that a path means which leads to none; empty if that is not known."""
     name, inside = share_parts(path)
     owner = folder.packages[0].find(name) if folder.packages else None
-    if owner is None or not folder.reads_meant:
+    if not owner or not folder.reads_meant:
         return ""
     meant = meant_file(owner, f"share/{name}/{inside}")
     return owner.path(meant) if meant else ""
-
-
-def _spawned_by(node: StartedNode) -> Sequence[StartedNode]:
-    """Return the controllers that a node starts, if it is a spawner whose arguments are known."""
-    return (list_controllers(node) or ()) if node.executable in SPAWNERS else ()
 
 
 def _given_by(
@@ -179,7 +179,7 @@ def _given_by(
     for facts in own_nodes:  # several in one program
         if facts.name:
             yield facts.name, files.read_given(package, node, facts.name)
-    for controller in _spawned_by(node):
+    for controller in list_spawned(node):
         given = (*shared, *(controller.parameters or ()))
         started = controller._replace(parameters=given)
         yield controller.node_name or "", files.read_given(package, started, "")

@@ -2,9 +2,11 @@
 
 import posixpath
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache, cached_property
 
+from grader.base.grouping import Strings, StringsByName
+from grader.base.names import last_part
+from grader.base.records import Record
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import sections_in, values_in
@@ -16,8 +18,7 @@ from grader.workspace.model.text_files import MAX_YAML, read_paths
 from grader.workspace.model.workspace_folder import WorkspaceFolder
 
 
-@dataclass(frozen=True, eq=False)
-class InstalledFiles:
+class InstalledFiles(Record):
     """The files that builds install, by their paths below the prefix, and the YAML files."""
 
     folder: WorkspaceFolder
@@ -29,23 +30,30 @@ class InstalledFiles:
 
         The keys are the paths of the files in the workspace.
         """
-        files: dict[str, YamlNode | YamlFault] = {}
+        files = {}
         for package in self.folder.packages:
             paths = [path for path in package.tree.files if path.endswith((".yaml", ".yml"))]
             launched = {path for owner, path, _ in self.launches.files if owner is package}
             for path in read_paths(package, (file for file in paths if file not in launched)):
-                whole_path, data = package.path(path), package.tree.read(path, MAX_YAML)
+                whole_path = package.path(path)
+                data = package.tree.read(path, MAX_YAML)
                 if data is not None:
                     files[whole_path] = self.folder.recall(_read_yaml, data, whole_path)
         return files
 
     @property
-    def trees(self) -> Iterator[tuple[str, YamlNode]]:
-        """The YAML files that are read, with their paths."""
+    def trees(self) -> Iterator[YamlNode]:
+        """The YAML files that are read."""
         self.folder.charge(1 + len(self.yaml))
-        for path, node in self.yaml.items():
+        for node in self.yaml.values():
             if isinstance(node, YamlNode):
-                yield (path, node)
+                yield node
+
+    @property
+    def sections(self) -> Iterator[tuple[Strings, YamlNode]]:
+        """The parameters of each node in these files, with the keys of the node."""
+        for tree in self.trees:
+            yield from sections_in(tree)
 
     def find_source(self, path: str) -> str | None:
         """Return the file of the workspace that is installed at a path.
@@ -64,11 +72,15 @@ class InstalledFiles:
 
         The path begins with the stand-in of the prefix.
         """
-        tree = self.yaml.get(self.find_source(path) or "")
+        return self.find_tree(self.find_source(path) or "")
+
+    def find_tree(self, path: str) -> YamlNode | None:
+        """Return the YAML file at a path in the workspace; None where it is not read."""
+        tree = self.yaml.get(path)
         return tree if isinstance(tree, YamlNode) else None
 
     @cached_property
-    def _sources_of_installed(self) -> Mapping[str, str]:
+    def _sources_of_installed(self) -> StringsByName:
         """The files of the workspace, by the paths below the prefix where they are installed."""
         sources: dict[str, str] = {}
         for package in self.folder.packages:
@@ -79,37 +91,32 @@ class InstalledFiles:
     @cached_property
     def typed_sections(self) -> frozenset[str]:
         """The names of controllers and others that parameter files give a type."""
-        names: set[str] = set()
-        for _, tree in self.trees:
-            for keys, section in sections_in(tree):
-                if keys and section.get("type") is not None:
-                    names.add(keys[-1].rpartition("/")[2])
-                if isinstance(section.value, dict):
-                    for name, inner in section.value.items():
-                        if inner.get("type") is not None:
-                            names.add(name)
+        names = set()
+        for keys, section in self.sections:
+            if keys and section.get("type"):
+                names.add(last_part(keys[-1]))
+            for name, inner in section.table.items():
+                if inner.get("type"):
+                    names.add(name)
         return frozenset(names)
 
     @cached_property
     def controllers(self) -> frozenset[str]:
         """The names of sections in parameter files that may be those of controllers."""
-        return frozenset(
-            keys[-1] for _, tree in self.trees for keys, _ in sections_in(tree) if keys
-        )
+        return frozenset(keys[-1] for keys, _ in self.sections if keys)
 
     def written_values(self, parameter: str) -> Iterator[ParameterValue]:
         """Yield the values that files have for a parameter, of whatever node."""
-        for _, tree in self.trees:
-            for _, section in sections_in(tree):
-                node = section.get(*parameter.split("."))
-                if node is not None:
-                    yield value_in_file(node)
+        for _, section in self.sections:
+            node = section.get(*parameter.split("."))
+            if node:
+                yield value_in_file(node)
 
     @cached_property
     def passed_files(self) -> Collection[str]:
         """The parameter files that launch files pass to others, which they include."""
-        files: set[str | None] = set()
-        for _, _, launch in self.launches.files:
+        files = set()
+        for launch in self.launches.every:
             for passed in launch.passed:
                 files |= {self.find_source(value or "") for _, value in passed.values}
         return {path for path in files if path is not None}
@@ -119,7 +126,7 @@ class InstalledFiles:
         places: set[Location] = set()
         for given in node.parameters or ():
             tree = self.tree_at(given.path) if given.path else None
-            if tree is not None:
+            if tree:
                 places |= self._wildcard_places_in(tree)
         self.folder.charge(len(places))
         return frozenset(places)
@@ -138,7 +145,7 @@ def _read_yaml(data: bytes, path: str) -> YamlNode | YamlFault:
 
 
 def _wildcard_places_in(tree: YamlNode) -> frozenset[Location]:
-    places: set[Location] = set()
+    places = set()
     for keys, section in sections_in(tree):
         if not keys or any(key.strip("/") in ("*", "**") for key in keys):
             places |= {value.node.location for value in values_in(section)}

@@ -2,16 +2,17 @@
 
 import posixpath
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Collection, Iterator, Mapping
+from functools import cached_property, lru_cache
 
+from grader.base.patterns import on_use
+from grader.base.records import Record
 from grader.base.source import LazyLocation, Location, Source
 from grader.ros.installation.places import SHARE, share_parts
 from grader.ros.launch.launch_model import GivenParameters
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.model import Robot
-from grader.ros.xml.elements import readable
+from grader.ros.xml.elements import first_text, readable
 from grader.ros.xml.parsing import Element
 from grader.workspace.model.launches import CONTROL_NODE, Launches
 from grader.workspace.model.text_files import TextFiles
@@ -23,17 +24,17 @@ _LISTED_HARDWARE = (
     *("gz_ros2_control/GazeboSimSystem", "ign_ros2_control/IgnitionSystem"),
     *("gazebo_ros2_control/GazeboSystem", "topic_based_ros2_control/TopicBasedSystem"),
 )
-_SYSTEM = re.compile(r"<ros2_control\b")
-_NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
-_CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
-_PACKAGE_IN = re.compile("the package '([\\w-]+)'")  # in the reason why a path is not known
-INCLUDED = re.compile(r"<xacro:include\b[^<>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
-_EXPRESSION, _WORD = re.compile(r"\$\{([^{}]*)"), re.compile(r"\w+")
-_FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
+_SYSTEM = on_use(r"<ros2_control\b")
+_NAME = on_use(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
+_CALLED = on_use(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
+_PACKAGE_IN = on_use("the package '([\\w-]+)'")  # in the reason why a path is not known
+INCLUDED = on_use(r"<xacro:include\b[^<>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
+_EXPRESSION = re.compile(r"\$\{([^{}]*)")
+_WORD = re.compile(r"\w+")
+_FOUND = on_use(r"\$\(find ([\w-]+)\)/")
 
 
-@dataclass(frozen=True, eq=False)
-class KnownRobot:
+class KnownRobot(Record):
     """A robot as ROS 2 loads it, expanded, of which everything is known."""
 
     path: str
@@ -41,7 +42,7 @@ class KnownRobot:
     root: Element  # the <robot>
     source: Source
 
-    @property
+    @cached_property
     def systems(self) -> list[Element]:
         """The <ros2_control> elements."""
         return list(self.root.iterchildren("ros2_control"))
@@ -62,8 +63,7 @@ class KnownRobot:
         return {element: tag for tag, element in enumerate(self.root.iter("*"))}
 
 
-@dataclass(frozen=True, eq=False)
-class Robots:
+class Robots(Record):
     """The robots of a workspace as ROS 2 loads them, and what their files say of others."""
 
     urdfs: tuple[Read, ...]  # the files of robots that are read
@@ -75,7 +75,7 @@ class Robots:
     @cached_property
     def known(self) -> tuple[KnownRobot, ...]:
         """The robots of which everything is known."""
-        return tuple(robot for urdf in self.urdfs if (robot := _known_robot(urdf)) is not None)
+        return tuple(robot for urdf in self.urdfs if (robot := _known_robot(urdf)))
 
     @property
     def may_be_others(self) -> bool:
@@ -89,7 +89,7 @@ class Robots:
         for package, _, launch in self.launches.files:
             for named in launch.named("urdf"):
                 names = {share_parts(named.path or "")[0], *_PACKAGE_IN.findall(named.reason)}
-                if any(name and package.find(name) is None for name in names):
+                if any(name and not package.find(name) for name in names):
                     return True
         return False
 
@@ -99,7 +99,7 @@ class Robots:
 
         The robot has one in Gazebo.
         """
-        is_started = any(node.executable == CONTROL_NODE for _, node in self.launches.nodes)
+        is_started = any(node.executable == CONTROL_NODE for node in self.launches.nodes)
         return is_started or self.has_controllers_in_gazebo
 
     @cached_property
@@ -107,7 +107,7 @@ class Robots:
         """Whether a robot has a controller manager in Gazebo."""
         return any(robot.has_controller_manager for robot in self.known)
 
-    @property
+    @cached_property
     def has_all_interfaces(self) -> bool:
         """Return whether the command interfaces of every robot are known.
 
@@ -126,7 +126,7 @@ class Robots:
     @cached_property
     def files(self) -> frozenset[str]:
         """The files that the robots are made of, by their paths; empty where none is known."""
-        files: set[str] = set()
+        files = set()
         for robot in self.known:
             files |= {robot.path, *(robot.place(element).path for element in robot.root.iter("*"))}
         return frozenset(files)
@@ -137,21 +137,17 @@ class Robots:
 
         Included files may have other endings.
         """
-        sources: list[Source] = []
-        for package in self.folder.packages:
-            sources += self.texts.read_sources(package, (".xacro", ".urdf"))
-        names: set[str] = set()
+        sources = list(self.texts.every_source((".xacro", ".urdf")))
+        names = set()
         for source in sources:
             names |= {posixpath.basename(path) for path in INCLUDED.findall(source.text)}
         others = tuple(name for name in names if name and not name.endswith((".xacro", ".urdf")))
-        for package in self.folder.packages:
-            sources += self.texts.read_sources(package, others)
-        return tuple(sources)
+        return (*sources, *self.texts.every_source(others))
 
     @cached_property
     def words_in_expressions(self) -> frozenset[str]:
         """The words in the expressions of the xacro files."""
-        words: set[str] = set()
+        words = set()
         for source in self.xacro_sources:
             for expression in _EXPRESSION.findall(source.text):
                 words.update(_WORD.findall(expression))
@@ -168,13 +164,14 @@ class Robots:
         """The same files, each with the robot that gives it."""
         for robot in self.known:
             for element in robot.root.iter("parameters"):
-                path = _FOUND.sub(rf"{SHARE}/\1/", readable((element.text or "").strip()))
+                path = _FOUND.sub(rf"{SHARE}/\1/", readable(first_text(element)))
                 if path.startswith(SHARE):
                     yield robot, GivenParameters(robot.place(element), path)
 
 
+@lru_cache(maxsize=16)  # parameter files that are compared with the same robots
 def command_interfaces(
-    robots: Sequence[KnownRobot],
+    robots: tuple[KnownRobot, ...],
 ) -> Mapping[str, tuple[frozenset[str], Location]]:
     """Return the command interfaces of the joints in <ros2_control> of some robots.
 
@@ -184,17 +181,19 @@ def command_interfaces(
     for robot in robots:
         for system in robot.systems:
             plugin = next(system.iterfind("hardware/plugin"), None)
-            is_own = plugin is not None and (plugin.text or "").strip() not in _LISTED_HARDWARE
+            is_own = plugin is not None and first_text(plugin) not in _LISTED_HARDWARE
             for joint in system.iterchildren("joint"):
                 if is_own and next(joint.iterchildren("command_interface"), None) is None:
                     continue
-                name, added = joint.get("name", ""), joint.iterchildren("command_interface")
+                name = joint.get("name", "")
+                added = joint.iterchildren("command_interface")
                 before, at = interfaces.get(name, (frozenset[str](), robot.place(joint)))
                 interfaces[name] = (before.union(each.get("name", "") for each in added), at)
     return interfaces
 
 
-def state_interfaces(robots: Sequence[KnownRobot]) -> Mapping[str, frozenset[str]]:
+@lru_cache(maxsize=16)
+def state_interfaces(robots: tuple[KnownRobot, ...]) -> Mapping[str, frozenset[str]]:
     """Return the state interfaces of the joints of hardware that has those that are listed."""
     interfaces: dict[str, frozenset[str]] = {}
     for robot in robots:
@@ -210,7 +209,7 @@ def state_interfaces(robots: Sequence[KnownRobot]) -> Mapping[str, frozenset[str
 def _known_robot(urdf: Read) -> KnownRobot | None:
     loaded = urdf.loaded
     is_known = not loaded.undetermined and loaded.verdict != "rejected"
-    if is_known and loaded.robot is not None and loaded.root is not None:
+    if is_known and loaded.robot and loaded.root is not None:
         return KnownRobot(urdf.path, loaded.robot, loaded.root, loaded.source)
     return None
 
@@ -219,6 +218,6 @@ def _without_macro(text: str, called: Collection[str]) -> str:
     """Return a text, which ends where a macro ends, without the macro if nothing calls it."""
     before, _, macro = text.partition("<xacro:macro")
     name = _NAME.search(macro.partition(">")[0])
-    if name is not None and name[1] not in called:
+    if name and name[1] not in called:
         return before
     return text

@@ -1,24 +1,23 @@
 """What the workspace's packages open, declare and define in their code and interfaces."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 
+from grader.base.records import Record
+from grader.base.reuse import Answers
 from grader.ros.known.end_rows import opened_ends
 from grader.ros.known.package_rows import children_by_node, program_row
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.nodes.node_facts import NodeFacts, PackageNodes
+from grader.ros.nodes.node_facts import NodeFacts, NodeProgram, PackageNodes
 from grader.ros.nodes.python.python_nodes import read_nodes
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.package_interfaces import PackageInterfaces, read_interfaces
 from grader.ros.package.program_names import surely_meant_program
-from grader.ros.package.static_transforms import STATIC_PUBLISHER
 from grader.workspace.model.installed_yaml import InstalledFiles
 from grader.workspace.model.launches import MANAGER
-from grader.workspace.model.text_files import MAX_YAML
+from grader.workspace.model.text_files import CPP_ENDINGS, MAX_YAML
 from grader.workspace.model.workspace_folder import WorkspaceFolder
 
-CPP_ENDINGS = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".h")
 # Of files without code: parameters, models, pictures and texts.
 _NO_CODE = frozenset(
     {
@@ -28,8 +27,7 @@ _NO_CODE = frozenset(
 )
 
 
-@dataclass(frozen=True, eq=False)
-class OwnCode:
+class OwnCode(Record):
     """What the code of packages opens and declares, and the interfaces that packages define.
 
     The packages are those of the workspace.
@@ -43,14 +41,19 @@ class OwnCode:
         """The nodes of the installed Python modules and of C++, by the names of packages."""
         return {package.name: self._nodes_in(package) for package in self.folder.packages}
 
+    @property
+    def nodes(self) -> Sequence[NodeFacts]:
+        """The nodes of all packages."""
+        return [facts for code in self.by_package.values() for facts in code.nodes]
+
     def _nodes_in(self, package: Package) -> PackageNodes:
         reads_meant = self.folder.reads_meant
-        if self.folder.memory is None:
-            return _read_nodes(package, reads_meant=reads_meant)
-        key = ("nodes", package.name, reads_meant, _program_texts(package))
-        return self.folder.memory.recall(
-            key, None, package.budget, lambda _: _read_nodes(package, reads_meant=reads_meant)
-        )
+        read = partial(_read_nodes, package, reads_meant=reads_meant)
+        if not self.folder.memory:
+            return read(Answers(package))
+        where = package.path(""), package.releases
+        key = ("nodes", package.name, where, reads_meant, _program_texts(package))
+        return self.folder.memory.recall(key, package, package.budget, read)
 
     @cached_property
     def interfaces(self) -> Mapping[str, PackageInterfaces]:
@@ -72,7 +75,7 @@ class OwnCode:
         if it starts none that is known.
         """
         owner = self.folder.find_package(node)
-        if owner is None or owner.name not in self.by_package:
+        if not owner or owner.name not in self.by_package:
             return None
         program = node.executable
         if self.folder.reads_meant:
@@ -94,7 +97,7 @@ class OwnCode:
         for package, code in self.by_package.items():
             for program in code.programs:
                 programs.setdefault((package, program.name), []).append(program.nodes)
-        nodes: dict[tuple[str, str], NodeFacts] = {}
+        nodes = {}
         for key, of_programs in programs.items():
             if len(of_programs) == 1 and len(of_programs[0]) == 1:
                 nodes[key] = of_programs[0][0]
@@ -110,13 +113,10 @@ class OwnCode:
         The result is empty for what is not read.
         """
         facts = self.own_node(node)
-        if facts is not None:
+        if facts:
             return [facts]
-        owner = self.folder.find_package(node)
-        code = self.by_package.get(owner.name) if owner is not None else None
-        programs = code.programs if code is not None else ()
-        named = [program.nodes for program in programs if program.name == node.executable]
-        return named[0] if len(named) == 1 else ()
+        named = self._find_programs(node)
+        return named[0].nodes if len(named) == 1 else ()
 
     def find_all_nodes(self, node: StartedNode) -> Sequence[NodeFacts]:
         """Return the same, but none of several nodes of a program that may have more."""
@@ -128,10 +128,14 @@ class OwnCode:
 
         Each node of a process reads its own section of the parameter files of that.
         """
+        return any(program.may_have_more for program in self._find_programs(node))
+
+    def _find_programs(self, node: StartedNode) -> Sequence[NodeProgram]:
+        """Return the programs of the workspace with the name that a node is started by."""
         owner = self.folder.find_package(node)
-        code = self.by_package.get(owner.name) if owner is not None else None
-        programs = code.programs if code is not None else ()
-        return any(program.may_have_more for program in programs if program.name == node.executable)
+        code = self.by_package.get(owner.name) if owner else None
+        programs = code.programs if code else ()
+        return [program for program in programs if program.name == node.executable]
 
     def is_read(self, node: StartedNode) -> bool:
         """Return whether all is known that the code of a node opens."""
@@ -147,13 +151,11 @@ class OwnCode:
     def name_in_program(self, node: StartedNode) -> str | None:
         """Return the name that the program of a node gives it; None where it is not known."""
         facts = self.own_node(node)
-        if facts is not None:
+        if facts:
             return facts.name
-        if (node.package, node.executable) == STATIC_PUBLISHER:
-            return None  # it ends in random letters
-        name = program_row(node.package, node.executable).name
-        row = opened_ends(node.package, node.executable)
-        return name or (row.name if row is not None else "") or None
+        name = program_row(*node.program).name
+        row = opened_ends(*node.program)
+        return name or (row.name if row else "") or None
 
     def find_children(self, name: str) -> frozenset[str]:
         """Return the nodes that a node of another package makes in its process.
@@ -176,7 +178,7 @@ def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:
     It has None in place of the bytes if its ending says that it has no code, and for a launch file
     in a folder without modules.
     """
-    texts: list[tuple[str, bytes | None]] = []
+    texts = []
     launch_files = frozenset(package.launch_files)
     for path, file in package.tree.files.items():
         is_launch_file = path in launch_files and _is_beside_no_module(package, path)
@@ -191,23 +193,23 @@ def _is_beside_no_module(package: Package, path: str) -> bool:
     return bool(folder) and f"{folder}/__init__.py" not in package.tree.files
 
 
-def _read_nodes(package: Package, *, reads_meant: bool) -> PackageNodes:
-    nodes = read_nodes(package, reads_meant=reads_meant)
+def _read_nodes(package: Package, answers: Answers[Package], *, reads_meant: bool) -> PackageNodes:
+    nodes = read_nodes(package, answers, reads_meant=reads_meant)
     setup = package.installation
-    if setup is None or not any(target.sources for target in setup.targets):
+    if not setup or not any(target.sources for target in setup.targets):
         return nodes
     from grader.ros.nodes.cpp.cpp_nodes import read_cpp_nodes  # late: few workspaces have C++
 
     compiled = read_cpp_nodes(package)
     return nodes._replace(
-        nodes=(*nodes.nodes, *compiled.nodes),
-        programs=(*nodes.programs, *compiled.programs),
-        doubts=(*nodes.doubts, *compiled.doubts),
+        nodes=nodes.nodes + compiled.nodes,
+        programs=nodes.programs + compiled.programs,
+        doubts=nodes.doubts + compiled.doubts,
         has_loose_declarations=nodes.has_loose_declarations or compiled.has_loose_declarations,
-        imports=(*nodes.imports, *compiled.imports),
-        field_uses=(*nodes.field_uses, *compiled.field_uses),
-        faults=(*nodes.faults, *compiled.faults),
-        synchronised=(*nodes.synchronised, *compiled.synchronised),
+        imports=nodes.imports + compiled.imports,
+        field_uses=nodes.field_uses + compiled.field_uses,
+        faults=nodes.faults + compiled.faults,
+        synchronised=nodes.synchronised + compiled.synchronised,
         loose_frames=compiled.loose_frames,
         texts=compiled.texts,
         cpp_files=compiled.cpp_files,

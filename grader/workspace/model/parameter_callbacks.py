@@ -3,35 +3,37 @@
 import re
 from typing import NamedTuple
 
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source
+from grader.base.text import blanked
 from grader.workspace.model.code_text import code_alone
+from grader.workspace.model.text_files import CODE_ENDINGS
 from grader.workspace.model.workspace import Workspace
 
-_ENDINGS = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
 _BUILD = "CMakeLists.txt"
-_COMMENT = re.compile(r"#[^\n]*")  # of CMake
+_COMMENT = on_use(r"#[^\n]*")  # of CMake
 # Callbacks that can refuse values, and those that are told of values that were set.
-_REFUSING = re.compile(r"\badd_(?:on|pre)_set_parameters_callback\s*+\(")
-_TOLD = re.compile(
+_REFUSING = on_use(r"\badd_(?:on|pre)_set_parameters_callback\s*+\(")
+_TOLD = on_use(
     r"\b(?:add_post_set_parameters_callback|add_parameter_callback"
     r"|add_parameter_event_callback|on_parameter_event)\s*+\("
 )
-_REFUSES = re.compile(
+_REFUSES = on_use(
     r"\bsuccessful\s*+=(?!=)\s*+(?!True\b|true\b)|successful\s*+\(\s*+(?!True\b|true\b|\))"
 )
 # A result that is not successful unless a statement below it says so.
-_DEFAULT = re.compile(
+_DEFAULT = on_use(
     r"^([ \t]*+)\S[^\n]*SetParametersResult(?:\s*+\(\s*+\)|\s++\w++\s*+;)", re.MULTILINE
 )
-_RETURNS = re.compile(r"\breturn\b")
-_CONDITION = re.compile(r"\b(?:if|else)\b")
-_THROWS = re.compile(r"\bthrow\b")
-_SUCCEEDS = re.compile(r"^([ \t]*+)\S*successful\s*+=", re.MULTILINE)
+_RETURNS = on_use(r"\breturn\b")
+_CONDITION = on_use(r"\b(?:if|else)\b")
+_THROWS = on_use(r"\bthrow\b")
+_SUCCEEDS = on_use(r"^([ \t]*+)\S*successful\s*+=", re.MULTILINE)
 # What a descriptor limits a parameter to: a range, or the value that it has first.
-_LIMITS = re.compile(r"\b(?:floating_point_range|integer_range)\b|\bread_only\s*+=\s*+[Tt]rue\b")
-_FROM_MAPPING = re.compile(r"\bParameterDescriptor\(\s*+\*\*")
-_GENERATES = re.compile(r"\bgenerate_parameter_(?:library|module)\b")
-_READS = re.compile(r"\bget_parameters?\s*+[(<]")
+_LIMITS = on_use(r"\b(?:floating_point_range|integer_range)\b|\bread_only\s*+=\s*+[Tt]rue\b")
+_FROM_MAPPING = on_use(r"\bParameterDescriptor\(\s*+\*\*")
+_GENERATES = on_use(r"\bgenerate_parameter_(?:library|module)\b")
+_READS = on_use(r"\bget_parameters?\s*+[(<]")
 
 
 class _ParameterCallbacks(NamedTuple):
@@ -51,14 +53,13 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
     """Return where the code of the packages is told of parameters, and can refuse values."""
     first: dict[re.Pattern[str], Location] = {}
     may_refuse = False
-    for package in workspace.packages:
-        for source in workspace.texts.read_sources(package, (*_ENDINGS, _BUILD)):
-            code = _strip_comments(source)
-            may_refuse = may_refuse or _may_refuse(code)
-            for pattern in (_REFUSING, _TOLD, _REFUSES, _LIMITS, _GENERATES, _READS):
-                match = pattern.search(code)
-                if match is not None:
-                    first.setdefault(pattern, source.at(match.start()))
+    for source in workspace.texts.every_source((*CODE_ENDINGS, _BUILD)):
+        code = _strip_comments(source)
+        may_refuse = may_refuse or _may_refuse(code)
+        for pattern in (_REFUSING, _TOLD, _REFUSES, _LIMITS, _GENERATES, _READS):
+            match = pattern.search(code)
+            if match:
+                first.setdefault(pattern, source.at(match.start()))
     can_refuse = first.get(_REFUSING) if _REFUSES in first else None
     return _ParameterCallbacks(
         first.get(_REFUSING) or first.get(_TOLD),
@@ -72,7 +73,7 @@ def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
 def _strip_comments(source: Source) -> str:
     """Return a text without its comments, and without the texts in code."""
     if source.path.endswith(_BUILD):
-        return _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
+        return _COMMENT.sub(blanked, source.text)
     return code_alone(source.text, source.path)
 
 
@@ -87,9 +88,9 @@ def _may_refuse(code: str) -> bool:
     if _THROWS.search(code) or any(word and _CONDITION.search(start) for start, word, _ in lines):
         return True
     made = _DEFAULT.search(code)
-    if made is None:
+    if not made:
         return "SetParametersResult(**" in code
-    set_below = [*_SUCCEEDS.finditer(code, made.end())]
+    set_below = list(_SUCCEEDS.finditer(code, made.end()))
     if not set_below or _RETURNS.search(code, made.end(), set_below[0].start()):
         return True
     return any(len(each[1]) > len(made[1]) for each in set_below)

@@ -6,23 +6,23 @@ They are counted in the texts of all files: code that is not understood is silen
 import re
 from collections import Counter
 from collections.abc import Iterator
-from typing import NamedTuple
 
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.ros.package.package import Package
-from grader.workspace.model.text_files import MAX_YAML, read_paths
+from grader.workspace.model.text_files import CODE_ENDINGS, MAX_YAML, read_paths
 from grader.workspace.model.workspace import Workspace
 
-_CODE = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".hh", ".h")
-_COMMENT_OF_CPP = re.compile(rb"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
-_COMMENT_OF_PYTHON = re.compile(rb"#[^\n]*")
-_CALL = re.compile(
+_COMMENT_OF_CPP = on_use(rb"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+_COMMENT_OF_PYTHON = on_use(rb"#[^\n]*")
+_CALL = on_use(
     rb"(?<!def )\b(?:create_(?:lifecycle_)?(?:publisher|subscription|service|client|server)"
     rb"|declare_parameters?|Action(?:Server|Client))\s*[(<]"
 )
 _MAX_READ = 16 * 1024 * 1024  # bytes of all files
 
 
-class ReadCalls(NamedTuple):
+class ReadCalls(Named):
     """How many calls there are, and of how many the node and the name are known."""
 
     known: int
@@ -33,11 +33,12 @@ class ReadCalls(NamedTuple):
 
 def read_calls(workspace: Workspace) -> ReadCalls:
     """Return how many calls of the code in a workspace are known."""
-    left, total = _MAX_READ, 0
-    unread: list[tuple[str, int]] = []
+    left = _MAX_READ
+    total = 0
+    unread = []
     for package in workspace.packages:
         known_in_files = Counter(path for path, _ in set(_known_places(workspace, package)))
-        code = [path for path in package.tree.files if path.endswith(_CODE)]
+        code = [path for path in package.tree.files if path.endswith(CODE_ENDINGS)]
         for path in read_paths(package, code):
             data = package.tree.read(path, min(left, MAX_YAML)) or b""
             left -= len(data)

@@ -1,36 +1,38 @@
 """The releases of ROS 2 for which a workspace says that it is."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 
 from grader.base.errors import InputError
+from grader.base.names import first_part
+from grader.base.patterns import on_use
 from grader.files.tree import File, Tree
 from grader.ros.known.releases import RELEASES, Release, StatedReleases
 from grader.workspace.model.workspace import Workspace
 
 _NAME = rf"({'|'.join(RELEASES)})(?![a-z0-9])"
-_RELEASE = re.compile(_NAME, re.IGNORECASE)
+_RELEASE = on_use(_NAME, re.IGNORECASE)
 _LIST = rf"(?:\s*(?:[,/&|+]|_%7C_|\band\b|\bor\b)\s*(?:ROS ?2 )?{_NAME})*"
 # What any file says: /opt/ros/humble, ros-humble-xacro, ros:humble.
-_PLACE = re.compile(rf"/opt/ros/{_NAME}|(?<![a-z])ros2?[:-]{_NAME}", re.IGNORECASE)
+_PLACE = on_use(rf"/opt/ros/{_NAME}|(?<![a-z])ros2?[:-]{_NAME}", re.IGNORECASE)
 # A setting: ROS_DISTRO: humble, required-ros-distributions: humble; its value may be a list.
-_SETTING = re.compile(
+_SETTING = on_use(
     r"ros[_-]?2?[_-]?distr(?:o|ibution)s?\b[\"']?(?:\s*[:=]|\s)[\s\"'{$:=-]*"
     rf"(\[[^]]{{0,200}}|(?:{_NAME}[\s,\"'-]*)+)",
     re.IGNORECASE,
 )
 _SECOND_NAMES = "Fitzroy|Geochelone|Hawksbill|Irwini|Jalisco|Kaiju|Luth|Ridley"
 # A sentence, a badge or a link in a line: ROS 2 Humble, ROS_2-Humble, docs.ros.org/en/humble.
-_SENTENCE = re.compile(
+_SENTENCE = on_use(
     rf"(?<![a-z])ROS[ _-]?2?(?:[\W_]*(?:distro\w{{0,30}}|version))?[\W_]{{0,5}}{_NAME}{_LIST}"
     rf"|{_NAME} (?:{_SECOND_NAMES})"
     rf"|(?:docs\.ros\.org/en|img\.shields\.io/ros/v)/{_NAME}|index\.ros\.org/[\w/]+#{_NAME}",
     re.IGNORECASE,
 )
-_BRANCH = re.compile(rf"{_NAME}\W{{0,4}}branch|branch\W{{1,4}}{_NAME}", re.IGNORECASE)
+_BRANCH = on_use(rf"{_NAME}\W{{0,4}}branch|branch\W{{1,4}}{_NAME}", re.IGNORECASE)
 # What a work was made from, and what it is for now: Ported from ROS 2 Jazzy to Lyrical.
-_ORIGIN = re.compile(
+_ORIGIN = on_use(
     r"\b(?:port|migrat|convert|upgrad|updat|mov|adapt|translat)\w*\b"
     r"(?:[ \n]+[\w/]+){0,4}?[ \n]+from"
     rf"\W{{1,4}}(?:ROS[ _-]?2?\W{{1,4}})?{_NAME}(?:\s+to\s+(?:ROS[ _-]?2?\s+)?(?P<to>{_NAME}))?"
@@ -39,18 +41,18 @@ _ORIGIN = re.compile(
     re.IGNORECASE,
 )
 # What a workflow is run for: another branch than the one that is read.
-_OF_BRANCH = re.compile(
-    rf"\b(?:ref\w*|branches)[ \t]*:[\s\[\"'-]*{_NAME}(?=[\"'\]\s])", re.IGNORECASE
-)
-_OF_UBUNTU: dict[str, tuple[Release, ...]] = {
+_OF_BRANCH = on_use(rf"\b(?:ref\w*|branches)[ \t]*:[\s\[\"'-]*{_NAME}(?=[\"'\]\s])", re.IGNORECASE)
+_OF_UBUNTU = {
     **dict.fromkeys(("20.04", "focal"), ("foxy", "galactic")),
     **dict.fromkeys(("22.04", "jammy"), ("humble", "iron")),
     **dict.fromkeys(("24.04", "noble"), ("jazzy", "kilted")),
     **dict.fromkeys(("26.04", "resolute"), ("lyrical",)),
 }
-_UBUNTU = re.compile(rf"\bubuntu:({'|'.join(map(re.escape, _OF_UBUNTU))})\b")
+# A line of a history: a date, and what was so then.
+_HISTORY = on_use(r"^\W*(?:19|20)\d\d(?:[-./]\d\d?){0,2}\b[^\n]*", re.MULTILINE)
+_UBUNTU = on_use(rf"\bubuntu:({'|'.join(map(re.escape, _OF_UBUNTU))})\b")
 _VARIABLE = "ROS_DISTRO"
-_COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*")
+_COMMENT = on_use(r"(?:^|(?<=\s))#[^\n]*")
 _MAX_FILES, _MAX_SIZE = 60, 128 * 1024  # of one kind; bytes
 
 
@@ -59,12 +61,12 @@ def stated_releases(tree: Tree) -> StatedReleases:
 
     The files are its containers, workflows and README, else other texts, else images of Ubuntu.
     """
-    every = [*tree.files.values()]
+    every = list(tree.files.values())
     settings = [file for file in every if _is_container(file.name.lower())]
     settings += [file for file in tree.settings() if file.name != ".gitmodules"]
     readmes = [file for file in every if file.name.lower().startswith("readme")]
     texts = [file for file in every if file.suffix in (".md", ".sh", ".bash")]
-    levels: list[list[_Reader]] = [
+    levels = [
         [(settings, _in_setting_of_every_branch), (_highest(tree, readmes), _in_prose)],
         [(settings, _in_setting)],
         [(readmes, _in_prose)],
@@ -80,7 +82,7 @@ def stated_releases(tree: Tree) -> StatedReleases:
 
 def _highest(tree: Tree, files: Sequence[File]) -> list[File]:
     """Return the files beside the packages; an archive of a repository has all in one folder."""
-    depth = len({path.partition("/")[0] for path in tree.files}) == 1
+    depth = len({first_part(path) for path in tree.files}) == 1
     return [file for file in files if file.path.count("/") <= depth]
 
 
@@ -89,8 +91,8 @@ _Reader = tuple[Sequence[File], Callable[[str], set[str]]]  # files, and what fi
 
 def _stated_by(readers: Sequence[_Reader]) -> StatedReleases:
     """Return the releases that some files state, and which of them do."""
-    stated: set[str] = set()
-    places: list[str] = []
+    stated = set()
+    places = []
     for files, find in readers:
         for path, text in _read(files):
             names = find(text)
@@ -140,11 +142,18 @@ def _in_setting_of_every_branch(text: str) -> set[str]:
 def _in_prose(text: str) -> set[str]:
     """Return the releases that a README states.
 
-    Those that are on other branches, and those that the work was ported from, are not among them.
+    Those that are on other branches, those that the work was ported from, and the older ones of a
+    history are not among them.
     """
-    releases: set[str] = set()
     text = _ORIGIN.sub(lambda match: f"ROS 2 {match['to'] or ''}", text)
-    for line in text.splitlines():
+    in_history = _in_lines(_HISTORY.findall(text))
+    newest = sorted(in_history, key=RELEASES.index)[-1:]
+    return _in_lines(_HISTORY.sub("", text).splitlines()) or {*newest}
+
+
+def _in_lines(lines: Iterable[str]) -> set[str]:
+    releases = set()
+    for line in lines:
         releases |= (_in_setting(line) | _names_in(_SENTENCE, line)) - _names_in(_BRANCH, line)
     return releases
 
@@ -166,5 +175,5 @@ def releases_in_path(path: str) -> list[Release]:
 @lru_cache(maxsize=2)
 def deciding_launch_files(workspace: Workspace) -> frozenset[str]:
     """Return the launch files that decide by the name of the release what each release has."""
-    sources = [launch.source for _, _, launch in workspace.launches.files]
+    sources = [launch.source for launch in workspace.launches.every]
     return frozenset(source.path for source in sources if _VARIABLE in source.text)

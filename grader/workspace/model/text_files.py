@@ -4,10 +4,12 @@ import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cache, cached_property
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
+from grader.base.records import Record
 from grader.base.source import Source
 from grader.base.text import comment_spans
 from grader.files.tree import parents
@@ -17,20 +19,22 @@ from grader.ros.xml.parsing import XmlFault, XmlFile
 from grader.workspace.model.code_text import is_script
 from grader.workspace.model.workspace_folder import WorkspaceFolder
 
+CPP_ENDINGS = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".hxx", ".ipp", ".tpp", ".h")
+CODE_ENDINGS = (".py", *CPP_ENDINGS)
 _MAX_FILES = 60  # of one kind in a package
 # What is charged as one part: names of files that are compared, and characters of a text in which
 # something is searched.
-FILES_A_PART, _SEARCHED_A_PART = 8, 512
+FILES_A_PART = 8
+_SEARCHED_A_PART = 512
 MAX_YAML = 512 * 1024  # bytes
 _TEXTS = (".yaml", ".yml", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".py", ".xml")
 _OWN_FOLDERS = frozenset({"config", "launch", "maps", "params", "rviz", "urdf", "worlds"})
 _PROGRAMS = (".py", ".cpp", ".cc", ".hpp", ".sh", "CMakeLists.txt")
 _WITH_LINES = (".yaml", ".yml", ".py")  # files whose comments begin with #
-_COMMENT_LINE = re.compile(r"(?:^|(?<=\s))#[^\n]*")
+_COMMENT_LINE = on_use(r"(?:^|(?<=\s))#[^\n]*")
 
 
-@dataclass(frozen=True, eq=False)
-class TextFiles:
+class TextFiles(Record):
     """The texts of the files of packages, and the XML files of Gazebo and MoveIt.
 
     Names are searched in the texts. Each file is read once.
@@ -48,7 +52,7 @@ class TextFiles:
         """The descriptions of robots for MoveIt that can be read."""
         return tuple(self._xml_files((".srdf",)))
 
-    def _xml_files(self, endings: tuple[str, ...]) -> Iterator[XmlFile]:
+    def _xml_files(self, endings: Strings) -> Iterator[XmlFile]:
         for package in self.folder.packages:
             for path in [file for file in package.tree.files if file.endswith(endings)][
                 :_MAX_FILES
@@ -57,9 +61,14 @@ class TextFiles:
                     data = package.tree.files[path].read(MAX_YAML)
                     yield XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
 
-    def read_sources(self, package: Package, endings: tuple[str, ...]) -> Iterator[Source]:
+    def read_sources(self, package: Package, endings: Strings) -> Iterator[Source]:
         """Yield the texts of the files of a package with these endings, without those of tests."""
         return self._sources(package, self._paths(package, endings))
+
+    def every_source(self, endings: Strings) -> Iterator[Source]:
+        """Yield the same of all packages that are built."""
+        for package in self.folder.packages:
+            yield from self.read_sources(package, endings)
 
     def launch_sources(self, package: Package) -> Iterator[Source]:
         """Yield the texts of the launch files of a package."""
@@ -68,12 +77,12 @@ class TextFiles:
     def _sources(self, package: Package, paths: Iterable[str]) -> Iterator[Source]:
         for path in read_paths(package, paths):
             source = self._read_text(package, path)
-            if source is not None:
+            if source:
                 self.folder.charge(1 + len(source.text) // _SEARCHED_A_PART)
                 yield source
 
     @cached_property
-    def _paths(self) -> Callable[[Package, tuple[str, ...]], Sequence[str]]:
+    def _paths(self) -> Callable[[Package, Strings], Sequence[str]]:
         """The paths of the files of a package with some endings, searched once."""
         return cache(_paths_ending)
 
@@ -83,21 +92,20 @@ class TextFiles:
         return cache(_without_comments)
 
     @cached_property
-    def launch_texts(self) -> tuple[str, ...]:
+    def launch_texts(self) -> Strings:
         """The texts of the launch files, of those of ROS 1 too."""
         sources: list[Source] = []
         for package in self.folder.packages:
             sources += self._sources(package, package.launch_files)
-        for package in self.folder.packages:
-            sources += self.read_sources(package, (".launch",))
+        sources += self.every_source((".launch",))
         return tuple(source.text for source in sources)
 
-    def searched_launch_texts(self) -> tuple[str, ...]:
+    def searched_launch_texts(self) -> Strings:
         """Return the texts of the launch files, to search something in each. Raises NotDecided."""
         self.folder.charge(1 + sum(map(len, self.launch_texts)) // _SEARCHED_A_PART)
         return self.launch_texts
 
-    def loose_texts(self, endings: tuple[str, ...]) -> Iterator[str]:
+    def loose_texts(self, endings: Strings) -> Iterator[str]:
         """Yield the texts of the files with these endings that are in no package, as a README."""
         folders = tuple(package.path("") for package in self.folder.found_packages)
         paths = [path for path in self.folder.tree.files if path.endswith(endings)]
@@ -141,21 +149,18 @@ class TextFiles:
         return bool(wanted.search(sources)) or (in_words and bool(wanted.search(words)))
 
     @cached_property
-    def python_texts(self) -> tuple[str, ...]:
+    def python_texts(self) -> Strings:
         """The texts of the Python files."""
-        sources: list[Source] = []
-        for package in self.folder.packages:
-            sources += self.read_sources(package, (".py",))
-        return tuple(source.text for source in sources)
+        return tuple(source.text for source in self.every_source((".py",)))
 
-    def has_plugin(self, name: str) -> bool:
-        """Return whether a package describes a plugin of this name for pluginlib."""
-        sources = (
-            source
-            for package in self.folder.packages
-            for source in self.read_sources(package, (".xml",))
-        )
-        return any(f'name="{name}"' in source.text for source in sources)
+    @cached_property
+    def has_plugin(self) -> Callable[[str], bool]:
+        """Whether a package describes a plugin of a name for pluginlib, searched once for each."""
+        return cache(self._has_plugin)
+
+    def _has_plugin(self, name: str) -> bool:
+        named = f'name="{name}"'
+        return any(named in source.text for source in self.every_source((".xml",)))
 
     def is_nowhere(self, owner: Package, target: str) -> bool:
         """Return whether a file of text that the package does not have is surely nowhere.
@@ -169,10 +174,9 @@ class TextFiles:
         if any(self._may_be_submodule(owner, folder) for folder in folders):
             return False
         name = posixpath.basename(target)
-        for package in self.folder.packages:
-            for source in self.read_sources(package, _PROGRAMS):
-                if name in source.text and not is_launch_file(source.path):
-                    return False
+        for source in self.every_source(_PROGRAMS):
+            if name in source.text and not is_launch_file(source.path):
+                return False
         return True
 
     def _may_be_submodule(self, owner: Package, folder: str) -> bool:
@@ -183,12 +187,19 @@ class TextFiles:
         return not any(path.startswith(f"{folder}/") for path in owner.tree.files)
 
 
+def read_code(texts: TextFiles, package: Package) -> list[Source]:
+    """Return the texts of the code of a package, without its launch files."""
+    launches = {package.path(path) for path in package.launch_files}
+    sources = texts.read_sources(package, CODE_ENDINGS)
+    return [source for source in sources if source.path not in launches]
+
+
 def _as_words(texts: Iterable[str]) -> str:
     """Return texts as one, in which small letters and underscores stand for the others."""
     return "\n".join(texts).lower().replace("-", "_")
 
 
-def _paths_ending(package: Package, endings: tuple[str, ...]) -> Sequence[str]:
+def _paths_ending(package: Package, endings: Strings) -> Sequence[str]:
     """Return the paths of the files of a package with some endings.
 
     A program without an ending may be one of Python.
@@ -212,7 +223,8 @@ def _without_comments(package: Package, path: str) -> Source | None:
 
 
 def _without_xml_comments(text: str) -> str:
-    pieces, outside = list[str](), 0
+    pieces = list[str]()
+    outside = 0
     for start, end in comment_spans(text):
         pieces += (text[outside:start], _blanks(text[start : end + len("-->")]))
         outside = end + len("-->")

@@ -5,19 +5,20 @@ import re
 from collections.abc import Iterator
 from functools import lru_cache
 
+from grader.base.patterns import on_use
 from grader.base.source import Source
-from grader.ros.package.made_paths import MadePath, made_paths
+from grader.ros.package.made_paths import made_paths
 from grader.workspace.model.workspace import Workspace
 
-_TAG = re.compile(
+_TAG = on_use(
     r"<(?P<end>/?)xacro:(?:if|unless)\b|<(?P<tag>(?:command|state)_interface|joint|link)\b[^<>]*?"
     r"\bname\s*=\s*(?P<quote>[\"'])(?P<name>.*?)(?P=quote)|\bfilename\s*=\s*[\"'](?P<file>[^\"']*)",
     re.DOTALL,
 )
-_XACRO_TAG = re.compile(r"<xacro:(\w+)\b([^<>]*)>")  # a call of a macro, or a property
-_ATTRIBUTE = re.compile(r"(?<![\w.-])([\w.-]++)\s*+=\s*(?:\"([^\"]*)\"|'([^']*)')")
-_COMPUTED = re.compile(r"\$\([^()]*\)|\$\{[^{}]*\}")
-_WORD = re.compile(r"[A-Za-z_]\w*")
+_XACRO_TAG = on_use(r"<xacro:(\w+)\b([^<>]*)>")  # a call of a macro, or a property
+_ATTRIBUTE = on_use(r"(?<![\w.-])([\w.-]++)\s*+=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_COMPUTED = on_use(r"\$\([^()]*\)|\$\{[^{}]*\}")
+_WORD = on_use(r"[A-Za-z_]\w*")
 _MAX_STEPS = 5  # from an argument by way of properties and parameters of macros
 
 
@@ -56,7 +57,7 @@ def names_under_arguments(workspace: Workspace, tag: str) -> frozenset[str]:
         return frozenset()
     dependent = _dependent(sources)
     chosen = _chosen_files(sources, workspace.robots.files)
-    names: set[str] = set()
+    names = set()
     for source in sources:
         is_chosen = source.path in chosen
         for match, depth in _matches(source.text):
@@ -87,7 +88,7 @@ def _dependent(sources: tuple[Source, ...]) -> frozenset[str]:
 
     The name `arg` stands for the arguments themselves.
     """
-    given: list[tuple[str, frozenset[str]]] = []  # names, with the words of their values
+    given = []  # names, with the words of their values
     for source in sources:
         for tag, attributes in _XACRO_TAG.findall(source.text):
             values = {
@@ -105,8 +106,8 @@ def _dependent(sources: tuple[Source, ...]) -> frozenset[str]:
 
 def _chosen_files(sources: tuple[Source, ...], robot_files: frozenset[str]) -> set[str]:
     """Return the files that an include under a condition names, or one whose path is computed."""
-    named: set[str] = set()
-    made: set[MadePath] = set()
+    named = set()
+    made = set()
     for source in sources:
         made |= {*made_paths(source)}
         named |= {

@@ -1,8 +1,9 @@
 """A workspace as the rules of names see it: its folder, and what is read of it."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import cached_property
 
+from grader.base.records import Record
 from grader.base.reuse import Memory
 from grader.files.tree import Tree
 from grader.ros.known.releases import Release
@@ -18,8 +19,7 @@ from grader.workspace.model.text_files import TextFiles
 from grader.workspace.model.workspace_folder import WorkspaceFolder
 
 
-@dataclass(frozen=True, eq=False)
-class Workspace:
+class Workspace(Record):
     """The packages of a folder with their robots, as the readers of names see them.
 
     Each file is read once.
@@ -46,6 +46,11 @@ class Workspace:
     def packages(self) -> tuple[Package, ...]:
         """The packages that a build of the workspace has."""
         return self.folder.packages
+
+    @cached_property
+    def own_packages(self) -> Mapping[str, Package]:
+        """The same packages by their names."""
+        return {package.name: package for package in self.packages}
 
     def find_package(self, node: StartedNode) -> Package | None:
         """Return the package of the workspace whose program a node is."""

@@ -2,11 +2,12 @@
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar, TypeVarTuple
 
 from grader.base.errors import NotDecided
+from grader.base.grouping import Strings
+from grader.base.records import Record
 from grader.base.reuse import Memory
 from grader.files.tree import Tree, parents
 from grader.ros.launch.launch_model import StartedNode
@@ -25,8 +26,7 @@ _USUAL_FOLDERS = (
 )
 
 
-@dataclass(frozen=True, eq=False)
-class WorkspaceFolder:
+class WorkspaceFolder(Record):
     """The files of a workspace and its packages, and the work that may be spent on reading them.
 
     `Workspace` makes it, and every other part of the model reads files through it.
@@ -66,7 +66,7 @@ class WorkspaceFolder:
         packages = []
         for package in self.found_packages:
             best = package.packages.get(package.name)
-            if not package.ignored_by and best is not None and best.folder == package.folder:
+            if not package.ignored_by and best and best.folder == package.folder:
                 packages.append(package)
         return tuple(packages)
 
@@ -79,7 +79,7 @@ class WorkspaceFolder:
 
     def recall(self, read: Callable[[*_Read], _T], *of: *_Read) -> _T:
         """Return what a function makes of texts and nothing else, or made of them before."""
-        if self.memory is None:
+        if not self.memory:
             return read(*of)
         return self.memory.recall((read, *of), None, self._work, lambda _: read(*of))
 
@@ -95,7 +95,7 @@ class WorkspaceFolder:
         return file is not None and file.read(len(start), first=True) == start
 
     @cached_property
-    def absent_submodules(self) -> tuple[str, ...]:
+    def absent_submodules(self) -> Strings:
         """The empty folders that git may fetch: those of submodules, as their names say."""
         filled = {folder for path in self.tree.files for folder in parents(path)}
         empty = []

@@ -2,15 +2,17 @@
 
 import posixpath
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from typing import TypeGuard
 
 from grader.base.errors import InputError, NotDecided
+from grader.base.grouping import StringsByName
 from grader.base.reuse import Memory
 from grader.base.source import Source
 from grader.files.limits import ARCHIVES
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, parents
+from grader.ros.installation.places import is_template
 from grader.ros.known.releases import Release, StatedReleases
 from grader.ros.package.finding import (
     is_backup,
@@ -29,7 +31,9 @@ from grader.workspace.model.known_robots import INCLUDED
 from grader.workspace.model.stated_releases import stated_releases
 from grader.workspace.opening.opened import OpenedWorkspace
 
-_MAX_PACKAGES, _MAX_ROBOTS = 1000, 200
+_DECLARES = b"xmlns:xacro"
+_MAX_PACKAGES = 1000
+_MAX_ROBOTS = 200
 _NOTES = (".txt", ".md", ".rst", ".log")
 _MAX_ALIKE = 20  # files of one name and size with which one in an archive is compared
 
@@ -38,7 +42,7 @@ def read_workspace(
     tree: Tree,
     identity: str,
     max_size: int,
-    arguments: Mapping[str, str],
+    arguments: StringsByName,
     memory: Memory | None = None,
     stated: StatedReleases | None = None,
 ) -> OpenedWorkspace:
@@ -53,7 +57,7 @@ def read_workspace(
         stated: The release of ROS 2 that an option or a setting gives; without it, its files state
             releases.
     """
-    if stated is None:
+    if not stated:
         stated = stated_releases(tree)
     all_packages = read_packages(
         tree,
@@ -94,7 +98,7 @@ def _read_robots(
     tree: Tree,
     packages: tuple[Package, ...],
     max_size: int,
-    arguments: Mapping[str, str],
+    arguments: StringsByName,
     memory: Memory | None,
     releases: Collection[Release],
 ) -> list[Read | Unreadable]:
@@ -120,11 +124,36 @@ def _read_robots(
             called="workspace",
         )
         robot = _read(tree, file, max_size, surroundings)
+        if file.path not in launched:
+            robot = _without_loading(robot)
         is_loaded = file.path in launched and file.path not in included
-        is_piece = _is_part(robot) or (counts[file.name] > 1 and _is_without_parents(robot))
+        is_piece = (
+            _is_part(robot)
+            or _declares_only(robot)
+            or (counts[file.name] > 1 and _is_without_parents(robot))
+        )
         is_whole = not _is_empty(robot) and (is_loaded or not is_piece)
         (robots if is_whole else parts).append(robot)
     return robots or [part for part in parts if not _is_empty(part)]
+
+
+def _without_loading(robot: Read | Unreadable) -> Read | Unreadable:
+    """Return xacro under the name of a URDF, which nothing loads, as its expansion.
+
+    The warning that ROS 2 does not evaluate it stays.
+    """
+    if not isinstance(robot, Read) or not robot.as_it_stands:
+        return robot
+    reading = robot.reading._replace(problems=robot.problems)
+    return robot._replace(reading=reading, as_it_stands=None)
+
+
+def _declares_only(robot: Read | Unreadable) -> bool:
+    """Return whether a file declares xacro and has no links: others may include it."""
+    if not isinstance(robot, Read) or _DECLARES not in robot.data:
+        return False
+    model = robot.reading.robot
+    return model is not None and not model.links
 
 
 def _without_packed_copies(tree: Tree, robot_files: Sequence[RobotFile]) -> list[RobotFile]:
@@ -152,6 +181,7 @@ def _whole(
     whole = []
     for file in robot_files:
         is_other = file.path in parts or is_backup(file.path) or _is_note(file)
+        is_other = is_other or is_template(file.path)
         if file.path in launched or not is_other:
             whole.append(file)
     return whole
@@ -165,7 +195,7 @@ def _is_note(file: RobotFile) -> bool:
 
 def _chosen_parts(tree: Tree, robot_files: Sequence[RobotFile]) -> frozenset[str]:
     """Return the paths of those files that another one includes by a name that it computes."""
-    parts: set[str] = set()
+    parts = set()
     for file in robot_files:
         text = (tree.read(file.path, URDF_LIMIT) or b"").decode("utf-8", "replace")
         names = [name for name in INCLUDED.findall(text) if "$" in posixpath.basename(name)]

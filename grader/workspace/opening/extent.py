@@ -1,7 +1,6 @@
 """What of a workspace was read, and what was not: without it, silence would be praise."""
 
-from typing import NamedTuple
-
+from grader.base.records import Named
 from grader.base.text import counted, enumerated, printable
 from grader.ros.known.releases import StatedReleases
 from grader.ros.package.finding import is_backup
@@ -13,7 +12,7 @@ _MAX_FILES = 3  # that are named
 _CPP = (".cpp", ".cc", ".cxx")
 
 
-class Extent(NamedTuple):
+class Extent(Named):
     """How many things of a workspace were read, and how many were not."""
 
     packages: int
@@ -77,13 +76,13 @@ def _counted_ones(*counts: tuple[int, str]) -> list[str]:
 
 def make_extent(workspace: Workspace, unread_robots: int, stated: StatedReleases) -> Extent:
     """Return what of a workspace was read; `unread_robots` are not even opened."""
-    nodes = [node for code in workspace.code.by_package.values() for node in code.nodes]
+    nodes = workspace.code.nodes
     cpp_files = expressions = 0
     for package in workspace.packages:
         cpp_files += _unread_cpp_files(workspace, package)
-        if package.installation is not None:
+        if package.installation:
             expressions += len(package.installation.unknown)
-    for _, _, launch in workspace.launches.files:
+    for launch in workspace.launches.every:
         expressions += len(launch.unknown)
     computed_names = 0
     for node in nodes:
@@ -122,13 +121,13 @@ def _count_copies(workspace: Workspace) -> int:
 def _unread_programs(workspace: Workspace) -> set[tuple[str, str]]:
     """Return the programs of the workspace that are started and whose nodes are not known."""
     unread = set()
-    for _, launch in workspace.launches.roots:
+    for launch in workspace.launches.outermost:
         for node in launch.nodes:
             owner = workspace.find_package(node)
-            if owner is None or workspace.code.own_node(node) is not None:
+            if not owner or workspace.code.own_node(node):
                 continue
-            if owner.has_program(node.package, node.executable) is not False:
-                unread.add((node.package, node.executable))
+            if owner.has_program(*node.program) is not False:
+                unread.add(node.program)
     return unread
 
 

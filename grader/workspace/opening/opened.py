@@ -1,11 +1,13 @@
 """Opened files: their packages, and their robots."""
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection, Sequence
+from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from grader.base.grouping import Strings, StringsByName
 from grader.base.problems import Problem
+from grader.base.records import Record
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree
@@ -26,8 +28,7 @@ if TYPE_CHECKING:
 _NO_FILES = make_tree("", (), ())
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class OpenedWorkspace:
+class OpenedWorkspace(Record):
     """The packages and the robots of opened files: a URDF on its own, a folder or an archive.
 
     `open_workspace` makes it of a path, `read_workspace` of a file tree. Commands show its robots,
@@ -46,11 +47,11 @@ class OpenedWorkspace:
     other_candidates: tuple[OtherCandidate, ...] = ()  # other robots and packages
     packages: tuple[Package, ...] = ()  # the one that matches best first
     whole_tree: Tree = _NO_FILES  # every file, also outside of packages
-    notes: tuple[str, ...] = ()  # on how it was read
+    notes: Strings = ()  # on how it was read
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     robots: tuple[Read | Unreadable, ...] = ()  # of a workspace, all of whose robots are read
     ros1_packages: tuple[Package, ...] = ()  # whose names are not compared
-    besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
+    besides: Strings = ()  # the paths of the files that a URDF on its own includes
     distro: Release | None = None  # the release of ROS 2 that is asked for
     stated: StatedReleases = NOT_STATED  # those that a workspace is for
     around: "Around | None" = None  # of a URDF on its own: reads the packages around it
@@ -108,7 +109,18 @@ class OpenedWorkspace:
         """Return the problems of one of its robots and of its meshes."""
         from grader.ros.package.incomplete import problems_of_robot  # late: few commands list them
 
-        return problems_of_robot(robot, (*self.packages, *self.ros1_packages), self.whole_tree)
+        packages = self.packages + self.ros1_packages
+        return problems_of_robot(robot, packages, self.whole_tree, lambda: self._starts(robot))
+
+    def _starts(self, robot: Read) -> bool:
+        """Return whether a robot is started for its controllers, always with the same arguments."""
+        workspace = self.workspace
+        given = set()
+        for path, arguments in workspace.launches.robot_arguments.items():
+            if workspace.installed.find_source(path) == robot.path:
+                given |= arguments
+        is_known = len(given) == 1 and all(value is not None for _, value in next(iter(given)))
+        return is_known and workspace.robots.has_controller_manager
 
     def problems_once(
         self, robot: Read, of_packages: Sequence[Problem] = (), *, with_assumptions: bool = False
@@ -147,7 +159,7 @@ class OpenedWorkspace:
         """Return what loads the meshes of one of its robots, for pictures."""
         from grader.ros.package.mesh_loading import MeshLoader  # late: few robots have meshes
 
-        packages = (*self.packages, *self.ros1_packages)
+        packages = self.packages + self.ros1_packages
         return MeshLoader(robot, self.around or (lambda _: (packages, self.whole_tree)))
 
     def package_problems(self) -> list[Problem]:
@@ -192,7 +204,7 @@ class OpenedWorkspace:
 
         return launch_graph(self.workspace, path)
 
-    def under(self, arguments: "Mapping[str, str]") -> "OpenedWorkspace":
+    def under(self, arguments: "StringsByName") -> "OpenedWorkspace":
         """Return it with its launch files under these launch arguments."""
         packages = tuple(package.under(arguments) for package in self.packages)
         return replace(self, packages=packages)
@@ -210,5 +222,5 @@ class OpenedWorkspace:
             return self.urdf.source
         data = self.whole_tree.read(path, URDF_LIMIT)
         if data is not None:
-            return Source(path, data.decode("utf-8", "replace"))
+            return Source.decoded(path, data)
         return None

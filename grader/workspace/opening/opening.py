@@ -11,6 +11,8 @@ from pathlib import Path
 
 from grader.base.errors import InputError, MachineError
 from grader.base.text import enumerated, printable, printable_path
+from grader.files.folder import file_at
+from grader.files.limits import is_recording
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import read_capped, read_standard_input, read_start
 from grader.files.tree import File, Tree, make_tree, overlaid
@@ -63,9 +65,11 @@ def open_workspace(
     """
     place = Path(path)
     tree = open_tree(place) if path not in ("", STANDARD_INPUT) else None
-    if tree is None:
+    if not tree and is_recording(path):
+        tree = make_tree(place.stem, [file_at(place, printable_path(place.name), "")], ())
+    if not tree:
         alone = Surroundings(Budget(), arguments=arguments)
-        if stated is not None:
+        if stated:
             alone = alone._replace(releases=stated.releases)
         opened = open_file(path, max_size, alone, with_neighbours=True)
         if not isinstance(opened.urdf, Read):
@@ -161,7 +165,7 @@ def _read_with_neighbours(
     except (OSError, InputError) as error:
         MachineError.check(error, printable_path(place.name))
         tree = None
-    if tree is not None:
+    if tree:
         return _with_files_around(opened, tree, path, alone)
     return opened
 
@@ -176,15 +180,15 @@ def _read_around(place: Path, names: Collection[str]) -> tuple[tuple[Package, ..
     from grader.files.folder import read_folder
     from grader.ros.package.finding import read_packages
 
-    nothing: tuple[tuple[Package, ...], Tree] = ((), make_tree("", (), ()))
+    nothing = ((), make_tree("", (), ()))
     try:
         folder = place.parent.resolve()
         above = (folder, *folder.parents)
         package = next((parent for parent in above if (parent / MANIFEST).is_file()), None)
         root = next((parent for parent in above if parent.name in names), None)
-        if package is not None:
+        if package:
             root = _workspace_around(package, {*names} - {package.name})
-        if root is None:
+        if not root:
             return nothing
         tree = read_folder(root)
     except (OSError, InputError) as error:

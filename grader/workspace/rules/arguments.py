@@ -1,8 +1,8 @@
 """Arguments of launch files and of xacro: those that are declared, and those that are passed."""
 
-import re
 from collections.abc import Iterator
 
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source
 from grader.ros.installation.places import PREFIX
 from grader.ros.known.package_rows import launch_arguments
@@ -15,14 +15,14 @@ from grader.workspace.rules.names import (
     Use,
 )
 
-_CONFIGURATION = re.compile(r"LaunchConfiguration\(\s*[\"'](\w+)[\"']|\$\(var (\w+)")
+_CONFIGURATION = on_use(r"LaunchConfiguration\(\s*[\"'](\w+)[\"']|\$\(var (\w+)")
 _MAX_LAUNCH = 128 * 1024  # bytes, as launch files are read
-_FIND = re.compile(r"\$\(find ([\w-]+)\)")
-_OTHER_INCLUDE = re.compile(
+_FIND = on_use(r"\$\(find ([\w-]+)\)")
+_OTHER_INCLUDE = on_use(
     r"<xacro:include\b[^<>]*?\bfilename\s*=\s*[\"'](?![^\"']*\.(?:xacro|urdf)[\"'])"
 )
 # xacro takes an argument also where it is only used, if it is passed.
-_XACRO_ARGUMENT = re.compile(
+_XACRO_ARGUMENT = on_use(
     r"<xacro:arg\b[^<>]*?\bname\s*=\s*[\"']([^\"']+)[\"']|\$\(arg\s+([^\s)]+)|\barg\(\s*[\"'](\w+)"
 )
 
@@ -35,7 +35,7 @@ def argument_facts(workspace: Workspace) -> Facts:
     for package, path, launch in workspace.launches.files:
         start = Location(package.path(path), 1, 1)
         text = (package.tree.read(path, _MAX_LAUNCH) or b"").decode("utf-8", "replace")
-        names = [*launch.declared]
+        names = list(launch.declared)
         names += {match[1] or match[2] for match in _CONFIGURATION.finditer(text)}
         for owner in workspace.launches.find_targets(package, path):
             for name in names:
@@ -66,7 +66,7 @@ def _included_arguments(workspace: Workspace, launch: Launch, owner: str) -> Fac
 
 def _passed_arguments(workspace: Workspace) -> Iterator[Use]:
     """Yield the arguments that launch files pass to those that they include."""
-    for _, _, launch in workspace.launches.files:
+    for launch in workspace.launches.every:
         for passed in launch.passed:
             path = passed.path
             if workspace.installed.has_file(path) or path in launch_arguments():
@@ -85,7 +85,7 @@ def _xacro_arguments(workspace: Workspace) -> Facts:
                 yield Open("xacro argument")
         if includes_others(workspace, source):
             yield Open("xacro argument")
-    for _, _, launch in workspace.launches.files:
+    for launch in workspace.launches.every:
         yield from _passed_to_xacro(workspace, launch)
 
 
@@ -98,12 +98,12 @@ def _passed_to_xacro(workspace: Workspace, launch: Launch) -> Iterator[Use]:
             source_path = workspace.installed.find_source(file.path or "")
             is_expanded = source_path in workspace.robots.files
             for name, _ in file.arguments:
-                at, said = file.location, "Command of xacro"
-                yield Use("xacro argument", name, at, said, optional=not is_expanded)
+                at = file.location
+                yield Use("xacro argument", name, at, "Command of xacro", optional=not is_expanded)
 
 
 def includes_others(workspace: Workspace, source: Source) -> bool:
     """Return whether a file includes one of another package, or one that is not read here."""
-    if any(workspace.packages[0].find(name) is None for name in _FIND.findall(source.text)):
+    if any(not workspace.packages[0].find(name) for name in _FIND.findall(source.text)):
         return True
     return _OTHER_INCLUDE.search(source.text) is not None

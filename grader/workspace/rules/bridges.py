@@ -1,23 +1,32 @@
 """Bridges between Gazebo and ROS: rows of ros_gz_bridge compared with topics of Gazebo."""
 
 import posixpath
-import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
-from grader.base.names import closest
+from grader.base.names import closest, last_part
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
-from grader.ros.config.yaml_nodes import YamlFault, YamlNode
+from grader.ros.config.yaml_nodes import YamlFault
 from grader.ros.known.gazebo_rows import NO_SENSOR, gazebo
 from grader.ros.known.package_tables import bridge_table
 from grader.ros.launch.launch_model import StartedNode
+from grader.ros.xml.elements import first_text
 from grader.ros.xml.parsing import Element, XmlFile
-from grader.workspace.graph.bridge_rows import BRIDGE, TO_GAZEBO, TO_ROS, BridgeRow, bridge_rows
+from grader.workspace.graph.bridge_rows import (
+    BRIDGE,
+    PARAMETER_BRIDGE,
+    TO_GAZEBO,
+    TO_ROS,
+    BridgeRow,
+    bridge_rows,
+)
 from grader.workspace.graph.gazebo_topics import (
     GazeboTopic,
+    elements_in,
     gazebo_topics,
-    roots,
     sensor_topics,
 )
 from grader.workspace.graph.graph import make_graph
@@ -27,22 +36,19 @@ from grader.workspace.rules.names import (
     Facts,
     Mismatch,
     Mismatches,
-    corrections,
+    charge_guess,
     cost_of_guess,
     warning,
 )
-from grader.workspace.rules.rule_table import (
-    NO_COMPANION,
-    NO_TOPIC,
-    Rule,
-)
+from grader.workspace.rules.rule_table import NO_COMPANION, NO_TOPIC, Rule, Symptom
 
 _TOPIC_KEYS = ("topic_name", "ros_topic_name", "gz_topic_name", "ign_topic_name")
-_EXCHANGED = re.compile(
+_EXCHANGED = on_use(
     r"(?P<topic>[^@\s]++)@(?P<gz>(?:gz|ignition)\.msgs\.\w++)(?P<direction>[@\[\]])"
     r"(?P<ros>\w++/msg/\w++)"
 )
-_COMPUTED = re.compile("^(world|model)/|[${<%]")  # names that Gazebo or a program makes
+_OF_ROS = on_use(r"\w++/(?:msg/)?\w++")
+_COMPUTED = on_use("^(world|model)/|[${<%]")  # names that Gazebo or a program makes
 _EXPANDED = "expand_gz_topic_names"  # the parameter that puts the namespace before the names
 # Below the topic, or beside it: also of cameras that segment (gz-sensors).
 _DERIVED = ("points", "image", "depth_image", "camera_info", "labels_map", "colored_map")
@@ -75,6 +81,15 @@ _BRIDGE_FILE = Rule(
         "The bridge cannot read its rows from the file. It ends or bridges nothing, so no topic"
         " of Gazebo arrives in ROS 2."
     ),
+    symptoms=(
+        Symptom(
+            "bridge-no-sequence",
+            pattern=r"Could not parse config: top level must be a YAML sequence",
+            source="gazebosim/ros_gz a4d00a9, ros_gz_bridge/src/bridge_config.cpp:159",
+            sentence="The file of a bridge is no list.",
+            example="Could not parse config: top level must be a YAML sequence",
+        ),
+    ),
     wrong="""
 - ros_topic_name: scan
  gz_topic_name: scan
@@ -98,12 +113,12 @@ def _unreadable_files(workspace: Workspace) -> Mismatches:
         tree = workspace.installed.yaml.get(path)
         if isinstance(tree, YamlFault):
             yield Mismatch(_BRIDGE_FILE, f"this is not YAML: {tree}", tree.location)
-        elif tree is not None and isinstance(tree.value, dict):
+        elif tree and isinstance(tree.value, dict):
             message = "the file of a bridge is a list (a YAML sequence): begin each row with `- `"
             yield Mismatch(_BRIDGE_FILE, message, tree.location)
 
 
-class _GazeboTopics(NamedTuple):
+class _GazeboTopics(Named):
     """What is known of the topics of Gazebo."""
 
     by_name: Mapping[str, list[GazeboTopic]]  # those whose types are known
@@ -142,7 +157,7 @@ def _topics_of_gazebo(workspace: Workspace, bridged: set[str]) -> _GazeboTopics:
     for topic in topics:
         by_name.setdefault(topic.name, []).append(topic)
     taken = {*bridged}
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         if node.package == "ros_gz_image":
             taken |= {(word or "").strip("/") for word in node.arguments or ()}
     unused = [topic for topic in topics if topic.name not in taken]
@@ -158,7 +173,7 @@ def _topics_of_gazebo(workspace: Workspace, bridged: set[str]) -> _GazeboTopics:
     )
 
 
-class _NamelessSensor(NamedTuple):
+class _NamelessSensor(Named):
     """A sensor for whose topic Gazebo makes a name."""
 
     name: str
@@ -172,13 +187,12 @@ def _nameless_sensors(
     """Return sensors without a <topic> by the types of their messages, which no topic has."""
     named = {f"gz.msgs.{topic.type}" for topic in topics}
     nameless: dict[str, _NamelessSensor] = {}
-    for root, place in roots(workspace):
-        for sensor in root.iter("sensor"):
-            types = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR)
-            gz_type = f"gz.msgs.{types.topic}"
-            if gz_type not in named and next(sensor.iterchildren("topic"), None) is None:
-                nameless_sensor = _NamelessSensor(sensor.get("name", ""), gz_type, place(sensor))
-                nameless.setdefault(gz_type, nameless_sensor)
+    for sensor, place in elements_in(workspace, "sensor"):
+        types = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR)
+        gz_type = f"gz.msgs.{types.topic}"
+        if gz_type not in named and next(sensor.iterchildren("topic"), None) is None:
+            nameless_sensor = _NamelessSensor(sensor.get("name", ""), gz_type, place(sensor))
+            nameless.setdefault(gz_type, nameless_sensor)
     return nameless
 
 
@@ -214,7 +228,7 @@ def _without_topic(row: BridgeRow, nameless: Mapping[str, _NamelessSensor]) -> M
     A model that is not in the workspace may publish it.
     """
     sensor = nameless.get(row.gz_type)
-    if sensor is None or not row.is_published:
+    if not sensor or not row.is_published:
         return
     at = sensor.location
     message = (
@@ -256,9 +270,9 @@ def _incomplete_rows(workspace: Workspace) -> Mismatches:
     A bridge leaves out such a row.
     """
     for path in sorted(bridge_files(workspace)):
-        tree = workspace.installed.yaml.get(path)
-        for row in tree.items if isinstance(tree, YamlNode) else ():
-            if all(row.get(key) is None for key in _TOPIC_KEYS):
+        tree = workspace.installed.find_tree(path)
+        for row in tree.items if tree else ():
+            if all(not row.get(key) for key in _TOPIC_KEYS):
                 continue
             for key in bridge_table().keys:
                 if row.get(key) is None and row.get(key.replace("gz", "ign")) is None:
@@ -288,9 +302,8 @@ Node(
 
 def _other_arguments(workspace: Workspace) -> Mismatches:
     """Yield the first argument of a bridge that is no topic with types, with which it ends."""
-    for _, node in workspace.launches.nodes:
-        is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
-        word = _first_other_argument(node) if is_bridge else None
+    for node in workspace.launches.nodes:
+        word = _first_other_argument(node) if node.program == PARAMETER_BRIDGE else None
         if word is not None:
             message = (
                 f"the bridge ends with an error at the argument {quoted(word)}: write "
@@ -308,6 +321,23 @@ _BRIDGE_TYPE = Rule(
     why=(
         "The bridge prints 'Failed to create a bridge for topic', or receives nothing because "
         "Gazebo publishes another type. No message arrives in ROS 2."
+    ),
+    symptoms=(
+        Symptom(
+            "bridge-type",
+            pattern=(
+                r"Failed to create a bridge for topic \[/?(?P<topic>[^\]]{1,200}+)\] with ROS2 "
+                r"type \[(?P<type>[^\]]{0,200}+)\]"
+            ),
+            source="gazebosim/ros_gz a4d00a9, ros_gz_bridge/src/ros_gz_bridge.cpp:121",
+            sentence="The bridge converts no such pair of types.",
+            example=(
+                "Failed to create a bridge for topic [/scan] with ROS2 type "
+                "[sensor_msgs/msg/LaserScan] to topic [/scan] with Gazebo Transport type "
+                "[gz.msgs.Laserscan]"
+            ),
+            within=("topic",),
+        ),
     ),
     wrong="""
 Node(
@@ -331,10 +361,10 @@ Node(
 
 def _exchanged_types(workspace: Workspace) -> Mismatches:
     """Yield the arguments of bridges that have the type of Gazebo in place of that of ROS."""
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         for word in node.arguments or () if node.package == BRIDGE else ():
             match = _EXCHANGED.fullmatch(word or "")
-            if match is not None:
+            if match:
                 right = f"{match['topic']}@{match['ros']}{match['direction']}{match['gz']}"
                 message = f"the types are exchanged, so nothing is bridged: write {right}"
                 is_certain = node.when is True
@@ -382,9 +412,8 @@ def _no_direction(row: BridgeRow) -> Mismatch:
     meant = closest(row.direction, bridge_table().directions)
     guess = f"; did you mean {meant}?" if meant is not None else ""
     message = f"the bridge leaves out the row: it has no direction {quoted(row.direction)}{guess}"
-    at = row.direction_location
-    either = corrections(row.direction, at, meant)
-    return Mismatch(_BRIDGE_DIRECTION, message, at, None, row.is_used, either)
+    wrong = Mismatch(_BRIDGE_DIRECTION, message, row.direction_location, None, row.is_used)
+    return wrong.correcting(row.direction, meant)
 
 
 def _no_type(workspace: Workspace, row: BridgeRow) -> Mismatches:
@@ -393,7 +422,7 @@ def _no_type(workspace: Workspace, row: BridgeRow) -> Mismatches:
     written = row.ros_type.replace(".", "/")
     if written in types:
         return
-    workspace.charge(cost_of_guess(len(types)))
+    charge_guess(workspace, types)
     meant = closest(written, types, is_clear=True)
     package, _, name = written.partition("/")
     if f"{package}/msg/{name}" in types:
@@ -402,8 +431,8 @@ def _no_type(workspace: Workspace, row: BridgeRow) -> Mismatches:
         return
     at = row.ros_type_location
     message = f"the bridge has no type {quoted(written)}; did you mean {meant}?"
-    either = corrections(written, at, meant)
-    yield Mismatch(_BRIDGE_TYPE, message, at, None, row.is_used, either)
+    wrong = Mismatch(_BRIDGE_TYPE, message, at, None, row.is_used)
+    yield wrong.correcting(written, meant)
 
 
 def bridge_files(workspace: Workspace) -> set[str]:
@@ -421,12 +450,12 @@ def bridge_files(workspace: Workspace) -> set[str]:
 
 def _files_named(workspace: Workspace) -> Iterator[Any]:
     """Yield what launch files name as the files of bridges."""
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         for given in node.parameters or () if node.package == BRIDGE else ():
             value = given.values.get("config_file")
-            if value is not None:
+            if value:
                 yield value.value
-    for _, launch in workspace.launches.roots:
+    for launch in workspace.launches.outermost:
         for passed in launch.passed:
             values = dict(passed.values) if f"/{BRIDGE}/" in passed.path else {}
             yield values.get("config_file")
@@ -438,6 +467,9 @@ def _conversions(row: BridgeRow, gazebo_types: set[str]) -> Mismatches:
     Where the topics of Gazebo have the type of the row, the other one is wrong.
     """
     fitting = _fitting_types(row)
+    if not fitting and _OF_ROS.fullmatch(row.gz_type):
+        message = f"the Gazebo type {row.gz_type} is a ROS type, so nothing is bridged"
+        yield Mismatch(_BRIDGE_TYPE, message, row.gz_type_location, None, row.is_used)
     if not fitting or row.gz_type in fitting:
         return
     ros_type = row.ros_type.replace(".", "/")
@@ -448,15 +480,18 @@ def _conversions(row: BridgeRow, gazebo_types: set[str]) -> Mismatches:
             if plain in converted:
                 meant.append(kind.replace(".", "/"))
     if meant:
-        wrong, at = ros_type, row.ros_type_location
+        written = ros_type
+        at = row.ros_type_location
     else:
-        wrong, meant, at = row.gz_type, fitting[:1], row.gz_type_location
-    either = corrections(wrong, at, meant[0]) if wrong and len(meant) == 1 else ()
+        written = row.gz_type
+        meant = fitting[:1]
+        at = row.gz_type_location
     message = (
         f"the bridge does not convert {ros_type} and {row.gz_type or 'an empty type'}; "
         f"write {enumerated(meant, word='or')}"
     )
-    yield Mismatch(_BRIDGE_TYPE, message, at, None, row.is_used, either)
+    wrong = Mismatch(_BRIDGE_TYPE, message, at, None, row.is_used)
+    yield wrong.correcting(written, meant[0] if written and len(meant) == 1 else None)
 
 
 def _clock_to_gazebo(row: BridgeRow) -> Mismatches:
@@ -481,8 +516,8 @@ def _wrong_direction(
     In an argument, the direction is a character.
     """
     at = row.direction_location
-    either = corrections(row.direction, at, right) if at != row.location else ()
-    return Mismatch(_BRIDGE_DIRECTION, message, at, related, row.is_used, either)
+    wrong = Mismatch(_BRIDGE_DIRECTION, message, at, related, row.is_used)
+    return wrong.correcting(row.direction, right if at != row.location else None)
 
 
 def _opposite_direction(row: BridgeRow, topics: list[GazeboTopic]) -> Mismatches:
@@ -490,9 +525,13 @@ def _opposite_direction(row: BridgeRow, topics: list[GazeboTopic]) -> Mismatches
     if len({topic.is_input for topic in topics}) != 1:
         return
     at = topics[0].location
-    wrong, right, done = TO_GAZEBO, TO_ROS, "publishes it"
+    wrong = TO_GAZEBO
+    right = TO_ROS
+    done = "publishes it"
     if topics[0].is_input:
-        wrong, right, done = TO_ROS, TO_GAZEBO, "reads it"
+        wrong = TO_ROS
+        right = TO_GAZEBO
+        done = "reads it"
     if row.direction == wrong:
         message = (
             f"the topic {row.gz} is bridged {wrong}, but Gazebo {done} ({at.file_and_line}): "
@@ -550,7 +589,7 @@ def _not_there(row: BridgeRow, unused: Sequence[GazeboTopic], *, is_known: bool)
     Nothing is said where a row has one of the same type that Gazebo has. A sensor that is not
     read may publish the topic, unless there is a similar one.
     """
-    fitting: dict[str, Location] = {}
+    fitting = {}
     for topic in unused:
         if f"gz.msgs.{topic.type}" == row.gz_type and topic.is_input != row.is_published:
             fitting[topic.name] = topic.location
@@ -561,12 +600,10 @@ def _not_there(row: BridgeRow, unused: Sequence[GazeboTopic], *, is_known: bool)
         return
     at = fitting[meant]
     what = "no sensor publishes" if row.is_published else "nothing reads"
-    message = (
-        f"{what} {quoted(row.gz)} in Gazebo; did you mean {quoted(meant)} ({at.file_and_line})?"
-    )
+    message = f"{what} {quoted(row.gz)} in Gazebo"
     is_certain = row.is_used and is_known and len(fitting) == 1
-    either = corrections(row.gz, row.location, meant, at)
-    yield Mismatch(_BRIDGE_TOPIC, message, row.location, at, is_certain, either)
+    wrong = Mismatch(_BRIDGE_TOPIC, message, row.location, at, is_certain)
+    yield wrong.meaning(row.gz, meant, at)
 
 
 _BRIDGE_CLOCK = Rule(
@@ -602,7 +639,11 @@ def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Mismatches:
     Nothing is said where a bridge, or an included launch file, may have more rows.
     """
     used = [row for row in rows if row.is_used]
-    if _is_clock_bridged(workspace, rows, used):
+    has_bridge = any(node.package == BRIDGE for node in workspace.launches.nodes)
+    has_clock = any(row.ros == "clock" for row in rows)
+    if not has_bridge or not used or has_clock:
+        return
+    if has_unread_topics(workspace) or _may_include_bridge(workspace):
         return
     for node, sim_time in make_graph(workspace).given("use_sim_time"):
         # A launch file may give a text of which ROS makes a boolean.
@@ -615,20 +656,9 @@ def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Mismatches:
             return
 
 
-def _is_clock_bridged(
-    workspace: Workspace, rows: Sequence[BridgeRow], used: Sequence[BridgeRow]
-) -> bool:
-    """Return whether a bridge may take the clock from Gazebo, or no bridge is started."""
-    has_bridge = any(node.package == BRIDGE for _, node in workspace.launches.nodes)
-    has_clock = any(row.ros == "clock" for row in rows)
-    if not has_bridge or not used or has_clock:
-        return True
-    return has_unread_topics(workspace) or _may_include_bridge(workspace)
-
-
 def _may_include_bridge(workspace: Workspace) -> bool:
     """Return whether a launch file includes one of another package that may have a bridge."""
-    for _, launch in workspace.launches.roots:
+    for launch in workspace.launches.outermost:
         for passed in launch.passed:
             if (
                 not workspace.installed.find_source(passed.path)
@@ -644,20 +674,19 @@ def _named_topics(workspace: Workspace) -> set[str]:
     Gazebo derives topics from those that are named.
     """
     topics: set[str] = set()
-    for root, _ in roots(workspace):
-        for element in root.iter("*"):
-            if str(element.tag).endswith("topic"):
-                topics.update(_topics_from(element))
+    for element, _ in elements_in(workspace, "*"):
+        if str(element.tag).endswith("topic"):
+            topics.update(_topics_from(element))
     return topics
 
 
 def _topics_from(element: Element) -> Iterator[str]:
     """Yield the topics that Gazebo makes of the one that an element names."""
-    text = (element.text or "").strip().strip("/")
+    text = first_text(element).strip("/")
     if not text:
         return
     sensor = element.getparent()
-    published: dict[str, str] = {}
+    published = {}
     if sensor is not None and sensor.tag == "sensor" and element.tag == "topic":
         published = dict(sensor_topics(sensor, element))
     if published:
@@ -674,7 +703,7 @@ def has_unread_topics(workspace: Workspace) -> bool:
     robots = workspace.robots
     if not robots.known or robots.may_be_others or workspace.launches.has_more_nodes:
         return True
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         is_known = node.arguments is not None and None not in node.arguments
         if node.package in (BRIDGE, "ros_gz_image") and not is_known:
             return True
@@ -684,7 +713,7 @@ def has_unread_topics(workspace: Workspace) -> bool:
 def _includes_model(file: XmlFile) -> bool:
     """Return whether a world includes a model that may have sensors."""
     for include in file.root.iter("include"):
-        model = (include.findtext("uri") or "").strip().rpartition("/")[2]
+        model = last_part((include.findtext("uri") or "").strip())
         if model.lower() not in _WITHOUT_SENSORS:
             return True
     return False

@@ -4,7 +4,7 @@ from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.ros.known.gazebo_rows import gazebo
 from grader.ros.xml.parsing import Element
-from grader.workspace.graph.gazebo_topics import roots
+from grader.workspace.graph.gazebo_topics import elements_in
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
@@ -18,7 +18,8 @@ from grader.workspace.rules.rule_table import (
 )
 from grader.workspace.rules.used_packages import OF_TESTS
 
-_LIBRARY, _RATE = "libgazebo_ros_", "updateRate"
+_LIBRARY = "libgazebo_ros_"
+_RATE = "updateRate"
 
 
 def classic_plugin_facts(workspace: Workspace) -> Facts:
@@ -27,20 +28,20 @@ def classic_plugin_facts(workspace: Workspace) -> Facts:
     A library that the workspace builds may read any element, and one beside the element of ROS 2
     does no harm.
     """
-    built = set[str]()
+    built = set()
     for package in workspace.packages:
         setup = package.installation
-        built |= {target.name for target in setup.targets} if setup is not None else set()
-    for root, place in roots(workspace):
-        for plugin in root.iter("plugin"):
-            library, at = plugin.get("filename", ""), place(plugin)
-            name = library.removeprefix("lib").removesuffix(".so")
-            if not library.startswith(_LIBRARY) or name in built or OF_TESTS.search(at.path):
-                continue
-            owners = [each for each in workspace.packages if each.holds(at.path)]
-            if not any(owner.is_of_ros1 for owner in owners):
-                yield Compared("words")
-                yield from _wrong_plugin(plugin, library, at)
+        built |= {target.name for target in setup.targets} if setup else set()
+    for plugin, place in elements_in(workspace, "plugin"):
+        library = plugin.get("filename", "")
+        at = place(plugin)
+        name = library.removeprefix("lib").removesuffix(".so")
+        if not library.startswith(_LIBRARY) or name in built or OF_TESTS.search(at.path):
+            continue
+        owners = [each for each in workspace.packages if each.holds(at.path)]
+        if not any(owner.is_of_ros1 for owner in owners):
+            yield Compared("words")
+            yield from _wrong_plugin(plugin, library, at)
 
 
 _CLASSIC_PLUGIN = Rule(
@@ -90,6 +91,6 @@ def _wrong_plugin(plugin: Element, library: str, at: Location) -> Mismatches:
             written.append(tag)
     if written:
         unread = enumerated([f"<{tag}>" for tag in written], word="or")
-        instead = enumerated([*dict.fromkeys(classic.elements[tag] for tag in written)])
+        instead = enumerated(dict.fromkeys(classic.elements[tag] for tag in written))
         message = f"{library} of ROS 2 does not read {unread}, as in ROS 1, but {instead}"
         yield warning(_CLASSIC_PLUGIN, message, at)

@@ -1,5 +1,6 @@
 """Code: what stops own nodes, or keeps them from doing anything."""
 
+from grader.ros.known.releases import is_before
 from grader.ros.launch.valid_names import is_node_name, why_no_topic
 from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.package.found_problems import syntax_fixes
@@ -17,6 +18,7 @@ from grader.workspace.rules.rule_table import (
     NO_RUN,
     Rule,
 )
+from grader.workspace.rules.shared_symptoms import COMPONENT_CLASS, COMPONENT_RESOURCE
 
 _CODE_SYNTAX = Rule(
     "code-syntax",
@@ -102,6 +104,82 @@ def tick(self):
     self.get_logger().info('tick')
 """,
     frame="pilot.py",
+)
+
+_FUNCTION_CALL = Rule(
+    "function-call",
+    "code",
+    NO_RUN,
+    "A function that is a statement of its own is called.",
+    why=(
+        "Without the parentheses Python looks the function up and does nothing. No error is "
+        "printed, or one of what the call should have prepared."
+    ),
+    wrong="""
+rclpy.init
+rclpy.spin(Pilot())
+""",
+    right="""
+rclpy.init()
+rclpy.spin(Pilot())
+""",
+    frame="main/pilot.py",
+)
+
+_DECLARED_ONCE = Rule(
+    "declared-once",
+    "code",
+    NO_RUN,
+    "A node declares a parameter once, and makes the same timer or subscription once.",
+    why=(
+        "rclpy raises ParameterAlreadyDeclaredException, and the node ends at its start. Two "
+        "timers or subscriptions of one callback call it twice as often."
+    ),
+    wrong="""
+def __init__(self):
+    super().__init__('pilot')
+    self.speed = self.declare_parameter('speed', 0.5).value
+    self.declare_parameter('speed', 0.5)
+""",
+    right="""
+def __init__(self):
+    super().__init__('pilot')
+    self.speed = self.declare_parameter('speed', 0.5).value
+    self.declare_parameter('width', 0.5)
+""",
+    frame="pilot.py",
+)
+
+_FILTER_CALLBACK = Rule(
+    "filter-callback",
+    "code",
+    NO_RUN,
+    "A synchroniser of message_filters has a callback.",
+    why="Messages arrive and are compared, and no function gets them. No error is printed.",
+    wrong="self.pairs = message_filters.TimeSynchronizer([self.left, self.right], 10)",
+    right="""
+self.pairs = message_filters.TimeSynchronizer([self.left, self.right], 10)
+self.pairs.registerCallback(self.hear)
+""",
+    frame="pairs/pilot.py",
+)
+
+_TRANSFORM_REGISTERED = Rule(
+    "transform-registered",
+    "code",
+    NO_RUN,
+    "A program that transforms messages imports their conversions.",
+    why=(
+        "tf2_ros raises a TypeException, because nothing has registered how to transform the type "
+        "of the message. The node stops at the first one."
+    ),
+    wrong="from geometry_msgs.msg import PointStamped",
+    right="""
+import tf2_geometry_msgs
+from geometry_msgs.msg import PointStamped
+""",
+    frame="transform/pilot.py",
+    at="rover/pilot.py",
 )
 
 _CALLBACK_PARAMETERS = Rule(
@@ -392,6 +470,35 @@ CallbackReturn on_activate(const rclcpp_lifecycle::State & state) override
     at="src/talk.cpp",
 )
 
+_CALLBACK_NAME = Rule(
+    "callback-name",
+    "code",
+    NO_RUN,
+    "Callbacks of a lifecycle node have the names that the lifecycle calls.",
+    why=(
+        "ros2 lifecycle reports success, because the node's base class has the callback, and what "
+        "the method should do is never done."
+    ),
+    wrong="""
+CallbackReturn on_activated(const rclcpp_lifecycle::State & state)
+{
+  return LifecycleNode::on_activate(state);
+}
+""",
+    right="""
+CallbackReturn on_activate(const rclcpp_lifecycle::State & state) override
+{
+  return LifecycleNode::on_activate(state);
+}
+""",
+    frame="active/talk.cpp",
+    beside={
+        "package.xml": "",
+        "talk/CMakeLists.txt": "",
+    },
+    at="src/talk.cpp",
+)
+
 _BUFFER_LISTENER = Rule(
     "buffer-listener",
     "code",
@@ -458,6 +565,10 @@ _COMPONENT_MACRO = Rule(
     why=(
         "The library then has no factory for the class. A container fails to load the "
         "component, and the generated program runs without a node."
+    ),
+    symptoms=(
+        COMPONENT_CLASS,
+        COMPONENT_RESOURCE,
     ),
     wrong="RCLCPP_COMPONENTS_REGISTER_NODE(rover::Driver)",
     right="RCLCPP_COMPONENTS_REGISTER_NODE(rover::Drive)",
@@ -563,8 +674,10 @@ RCLCPP_COMPONENTS_REGISTER_NODE(rover::Drive)
     },
 )
 
+# How rclcpp reads the types of values.
+_CONVERSIONS = {bool: "as_bool", int: "as_int", float: "as_double", str: "as_string"}
 # The rules of the faults that readers of code find.
-_RULES_BY_NAME = {rule.name: rule for rule in [*globals().values()] if isinstance(rule, Rule)}
+_RULES_BY_NAME = {rule.name: rule for rule in list(globals().values()) if isinstance(rule, Rule)}
 
 
 def code_facts(workspace: Workspace) -> Facts:
@@ -575,7 +688,7 @@ def code_facts(workspace: Workspace) -> Facts:
         if nodes.nodes or nodes.programs:  # a script may use rclpy without a node of its own
             yield Compared("code")
         for program in nodes.programs:
-            if program.syntax is not None:
+            if program.syntax:
                 at = program.syntax.location
                 if program.syntax.is_certain:
                     message = f"Python cannot read the file: {program.syntax.message}"
@@ -588,9 +701,11 @@ def code_facts(workspace: Workspace) -> Facts:
         for node in nodes.nodes:
             workspace.charge(1 + len(node.endpoints))
             yield from _invalid_names(node)
+            yield from _wrong_types(workspace, node)
         for fault in nodes.faults:
             rule = _RULES_BY_NAME[fault.rule]
-            at, related = fault.location, fault.related
+            at = fault.location
+            related = fault.related
             yield Mismatch(rule, fault.message, at, related, fault.is_certain, fixes=fault.fixes)
 
 
@@ -615,6 +730,69 @@ def __init__(self):
 """,
     frame="pilot.py",
 )
+
+
+_DECLARED_TYPE = Rule(
+    "declared-type",
+    "code",
+    NO_RUN,
+    "C++ declares a parameter with a value or a type, and reads it as that.",
+    why=(
+        "declare_parameter() with a name alone does not compile since Humble. as_int() of a double "
+        "throws ParameterTypeException, and the node ends."
+    ),
+    wrong="""
+#include <rclcpp/rclcpp.hpp>
+int main(int argc, char ** argv)
+{
+  rclcpp::init(argc, argv);
+  auto node = std::make_shared<rclcpp::Node>("talk");
+  node->declare_parameter("speed", 0.5);
+  auto speed = node->get_parameter("speed").as_int();
+  rclcpp::spin(node);
+}
+""",
+    right="""
+#include <rclcpp/rclcpp.hpp>
+int main(int argc, char ** argv)
+{
+  rclcpp::init(argc, argv);
+  auto node = std::make_shared<rclcpp::Node>("talk");
+  node->declare_parameter("speed", 0.5);
+  auto speed = node->get_parameter("speed").as_double();
+  rclcpp::spin(node);
+}
+""",
+    frame="whole/talk.cpp",
+    beside={
+        "package.xml": "<depend>rclcpp</depend>",
+        "talk/CMakeLists.txt": "",
+    },
+)
+
+
+def _wrong_types(workspace: Workspace, node: NodeFacts) -> Mismatches:
+    """Yield the parameters that C++ declares without a type, or reads as another one."""
+    is_new = not any(is_before(release, "humble") for release in workspace.releases)
+    types = {}
+    for parameter in node.parameters:
+        if parameter.is_declared and parameter.is_plain:
+            types[parameter.name] = _CONVERSIONS.get(type(parameter.default), "")
+        if parameter.is_untyped and is_new:
+            message = (
+                f"declare_parameter() of {parameter.name!r} has neither a type nor a value, which "
+                "does not compile since Humble"
+            )
+            is_certain = bool(workspace.releases)
+            yield Mismatch(_DECLARED_TYPE, message, parameter.location, is_certain=is_certain)
+    for parameter in node.parameters:
+        right = types.get(parameter.name, "")
+        if right and parameter.read_as in {*_CONVERSIONS.values()} - {right}:
+            message = (
+                f"{parameter.read_as}() throws for the parameter {parameter.name!r}: use {right}()"
+            )
+            wrong = Mismatch(_DECLARED_TYPE, message, parameter.location)
+            yield wrong.offering(parameter.read_as, right)
 
 
 def _invalid_names(node: NodeFacts) -> Mismatches:

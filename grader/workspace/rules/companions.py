@@ -3,15 +3,14 @@
 Nodes that have one name are compared here as well.
 """
 
-import re
 from collections.abc import Iterator, Sequence
 
+from grader.base.patterns import on_use
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.installation.places import PREFIX, share_parts
 from grader.ros.known.package_rows import (
     commands_that_end,
-    controller_row,
     package_row,
     program_row,
 )
@@ -25,6 +24,7 @@ from grader.workspace.graph.launch_graph import GraphNode
 from grader.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.workspace.graph.unread_ends import may_publish_type
 from grader.workspace.model.launches import CONTROL_NODE, MANAGER
+from grader.workspace.model.text_files import CODE_ENDINGS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
@@ -32,23 +32,22 @@ from grader.workspace.rules.names import (
     Mismatches,
     warning,
 )
-from grader.workspace.rules.rule_table import (
-    NO_COMPANION,
-    Rule,
-)
+from grader.workspace.rules.rule_table import NO_COMPANION, Rule, Symptom
+from grader.workspace.rules.shared_symptoms import EXTRAPOLATION, JOINTS_UNKNOWN, NO_TRANSFORM
 
 _ROBOT_PUBLISHER = "robot_state_publisher"
-_JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"
+_JOINT_STATE = "sensor_msgs.msg.JointState"
+_CLOCK = "rosgraph_msgs.msg.Clock"
 _JOINT_STATE_WORDS = ("joint_state", "JointState")
 _TIME = "use_sim_time"
-_CODE, _PAGES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h"), (".md", ".sh", ".bash", "Makefile")
+_PAGES = (".md", ".sh", ".bash", "Makefile")
 _LOOSE = (*_PAGES, ".rst", ".txt", ".yaml", ".yml", "Dockerfile")  # outside of packages
-_SOURCES = (*_CODE, *_PAGES, ".yaml")
+_SOURCES = (*CODE_ENDINGS, *_PAGES, ".yaml")
 # Launch files that start Gazebo or a part of it, and no bridge.
 _OF_GAZEBO = ("gz_sim.launch.py", "gz_server.launch.py", "gz_spawn_model.launch.py")
 _GAZEBO = ("gz sim", "ign gazebo")  # processes that open no topic of ROS
 _BRIDGES = (BRIDGE, "ros_ign_bridge")
-_WORD = re.compile(r"[a-z0-9]+")
+_WORD = on_use(r"[a-z0-9]+")
 
 
 def companion_facts(workspace: Workspace) -> Facts:
@@ -78,6 +77,19 @@ _NODE_NAME = Rule(
         "ros2 node list warns of an exact name that two nodes share. A parameter or service "
         "request may reach the wrong one of the two."
     ),
+    symptoms=(
+        Symptom(
+            "node-twice",
+            pattern=r"Publisher already registered for (?:provided )?node name",
+            source="ros2/rcl c19dab5, rcl/src/rcl/logging_rosout.c:229",
+            sentence="Two nodes have one name.",
+            example=(
+                "Publisher already registered for node name: 'mover'. If this is due to multiple "
+                "nodes with the same name then all logs for the logger named 'mover' will go out "
+                "over the existing publisher."
+            ),
+        ),
+    ),
     wrong="""
 Node(package='turtlesim', executable='turtlesim_node', name='sim'),
 Node(package='turtlesim', executable='turtlesim_node', name='sim'),
@@ -91,8 +103,8 @@ Node(package='turtlesim', executable='turtlesim_node', name='sim2'),
 
 def _same_names(workspace: Workspace) -> Mismatches:
     """Yield the nodes that a launch file gives a name which it gives another one."""
-    for graph, (_, launch) in zip(
-        make_graph(workspace).launched, workspace.launches.roots, strict=True
+    for graph, launch in zip(
+        make_graph(workspace).launched, workspace.launches.outermost, strict=True
     ):
         named = {node.location for node in launch.nodes if node.node_name}
         first: dict[str, GraphNode] = {}
@@ -116,7 +128,7 @@ def _broadcasters(workspace: Workspace) -> set[str]:
     """Return the names of the controllers that publish joint states."""
     names = set()
     for controller in defined_controllers(workspace):
-        if controller_row(controller.type.text).publishes_joint_states:
+        if controller.row.publishes_joint_states:
             names.add(controller.name)
     return names
 
@@ -154,8 +166,8 @@ def _two_joint_state_publishers(workspace: Workspace) -> Mismatches:
     """Yield the programs that publish joint states beside a controller that does."""
     broadcasters = _broadcasters(workspace)
     for launch, node in workspace.launches.launched:
-        is_source = program_row(node.package, node.executable).publishes_joint_states
-        if not is_source or node.when is not True or node.remaps or node.parameters:
+        is_source = program_row(*node.program).publishes_joint_states
+        if not is_source or not node.when or node.remaps or node.parameters:
             continue
         spawned = spawned_controllers(workspace, launch)
         for name in sorted(broadcasters.intersection(spawned)):
@@ -175,6 +187,10 @@ _JOINT_STATES = Rule(
     why=(
         "robot_state_publisher publishes no transforms for moving joints. RViz prints 'No "
         "transform from [...]' for their links and shows the robot incomplete."
+    ),
+    symptoms=(
+        NO_TRANSFORM,
+        JOINTS_UNKNOWN,
     ),
     wrong="""
 Node(package='robot_state_publisher', executable='robot_state_publisher',
@@ -204,7 +220,7 @@ def _no_joint_states(workspace: Workspace) -> Mismatches:
     a page says what does.
     """
     publishers = []
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         if node.executable == _ROBOT_PUBLISHER and node.when:
             publishers.append(node)
     moving = _moving_joints(workspace)
@@ -218,24 +234,24 @@ def _no_joint_states(workspace: Workspace) -> Mismatches:
         f"{quoted(first.name)} have no transform: start joint_state_publisher or a "
         "joint_state_broadcaster"
     )
-    at = first.location.resolve() if first.location is not None else None
+    at = first.location.resolve() if first.location else None
     yield warning(_JOINT_STATES, message, publishers[0].location, at)
 
 
 def _moving_joints(workspace: Workspace) -> list[Joint]:
     """Return the joints of the robots that have positions of their own."""
-    moving: list[Joint] = []
+    moving = []
     for robot in workspace.robots.known:
         for joint in robot.robot.joints:
-            if joint.has_position and joint.mimic is None:
+            if joint.has_position and not joint.mimic:
                 moving.append(joint)
     return moving
 
 
 def may_publish_joint_states(workspace: Workspace) -> bool:
     """Return whether something may publish the positions of the joints."""
-    for _, node in workspace.launches.nodes:
-        if program_row(node.package, node.executable).publishes_joint_states:
+    for node in workspace.launches.nodes:
+        if program_row(*node.program).publishes_joint_states:
             return True
         if may_publish_type(workspace, node, _JOINT_STATE):
             return True
@@ -253,9 +269,8 @@ def _is_bridged(workspace: Workspace, message: str) -> bool:
 
 def _is_mentioned(workspace: Workspace, words: Sequence[str]) -> bool:
     """Return whether a launch file, a program or a page of the workspace has one of some words."""
-    texts = [*workspace.texts.searched_launch_texts()]
-    for package in workspace.packages:
-        texts += [source.text for source in workspace.texts.read_sources(package, _SOURCES)]
+    texts = list(workspace.texts.searched_launch_texts())
+    texts += [source.text for source in workspace.texts.every_source(_SOURCES)]
     return any(word in text for text in texts for word in words)
 
 
@@ -267,6 +282,22 @@ _ROBOT_PUBLISHED = Rule(
     why=(
         "The controller manager waits for the topic robot_description and loads no hardware. "
         "Spawners wait or fail, and nothing moves."
+    ),
+    symptoms=(
+        Symptom(
+            "robot-waited-for",
+            pattern=(
+                r"Waiting for data on '[\w/~]{0,100}robot_description' topic to finish "
+                r"initialization"
+            ),
+            source=(
+                "ros-controls/ros2_control 53b9999d1, controller_manager/src/"
+                "controller_manager.cpp:769"
+            ),
+            sentence="Nothing publishes the robot where the controller manager listens.",
+            example="Waiting for data on 'robot_description' topic to finish initialization",
+            place="description",
+        ),
     ),
     wrong="Node(package='controller_manager', executable='ros2_control_node'),",
     right="""
@@ -283,7 +314,7 @@ Node(package='controller_manager', executable='ros2_control_node'),
 def _no_robot(workspace: Workspace) -> Mismatches:
     """Yield a controller manager that waits for a robot which nothing publishes."""
     managers = []
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         if node.executable == _ROBOT_PUBLISHER:
             return
         if node.package == MANAGER and node.executable == CONTROL_NODE:
@@ -306,7 +337,7 @@ def _sim_time(workspace: Workspace) -> Iterator[Location]:
     robot_state_publisher sends what it gets, whatever the time is.
     """
     for node, value in make_graph(workspace).given(_TIME):
-        if node.when is True and value.value is True and node.executable != _ROBOT_PUBLISHER:
+        if node.when and value.value is True and node.executable != _ROBOT_PUBLISHER:
             yield value.location
 
 
@@ -319,6 +350,7 @@ _CLOCK_PUBLISHED = Rule(
         "The time of the nodes stays 0: timers on their clock never fire, and tf2 finds no "
         "transforms for their messages."
     ),
+    symptoms=(EXTRAPOLATION,),
     wrong="""
 Node(package='rplidar_ros', executable='rplidar_node', parameters=[{'use_sim_time': True}]),
 """,
@@ -329,7 +361,7 @@ Node(package='rplidar_ros', executable='rplidar_node', parameters=[{'use_sim_tim
 def _no_clock(workspace: Workspace) -> Mismatches:
     """Yield that nodes wait for the time of a simulation that nothing publishes."""
     at = next(_sim_time(workspace), None)
-    if at is None or _may_have_clock(workspace):
+    if not at or _may_have_clock(workspace):
         return
     message = "use_sim_time is true, but nothing publishes /clock: the time of the node stays 0"
     yield warning(_CLOCK_PUBLISHED, message, at)
@@ -343,9 +375,9 @@ def _may_have_clock(workspace: Workspace) -> bool:
     """
     if _is_bridged(workspace, _CLOCK):
         return True
-    if any(_may_start_clock(workspace, launch) for _, launch in workspace.launches.roots):
+    if any(_may_start_clock(workspace, launch) for launch in workspace.launches.outermost):
         return True
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         is_open_bridge = node.package == BRIDGE and None in (node.arguments or (None,))
         if is_open_bridge or _may_be_clock(workspace, node):
             return True
@@ -354,8 +386,8 @@ def _may_have_clock(workspace: Workspace) -> bool:
 
 def _starts_gazebo(workspace: Workspace) -> bool:
     """Return whether a launch file starts Gazebo by a command, or a file that starts no more."""
-    for _, launch in workspace.launches.roots:
-        if any(command.startswith(_GAZEBO) for command in launch.commands):
+    for launch in workspace.launches.outermost:
+        if any(command.startswith(_GAZEBO) for command in launch.command_texts):
             return True
         if any(map(_is_of_gazebo, launch.passed)):
             return True
@@ -375,7 +407,7 @@ def _may_bridge_clock(workspace: Workspace) -> bool:
         return True
     if any("/clock" in text for text in workspace.texts.loose_texts(_LOOSE)):
         return True
-    bridges = [node for _, node in workspace.launches.nodes if node.package in _BRIDGES]
+    bridges = [node for node in workspace.launches.nodes if node.package in _BRIDGES]
     if not bridges:
         return any(bridge in text for text in workspace.texts.launch_texts for bridge in _BRIDGES)
     return not all(are_rows_known(workspace, node) for node in bridges)
@@ -384,7 +416,7 @@ def _may_bridge_clock(workspace: Workspace) -> bool:
 def _may_start_clock(workspace: Workspace, launch: Launch) -> bool:
     """Return whether a command or an included launch file may start a simulation."""
     ending = (*ros_machine().ending_commands, *commands_that_end(), *_GAZEBO)
-    if not all(command.startswith(ending) for command in launch.commands):
+    if not all(command.startswith(ending) for command in launch.command_texts):
         return True
     for passed in launch.passed:
         package = share_parts(f"{PREFIX}/{passed.path}")[0]
@@ -397,9 +429,9 @@ def _may_start_clock(workspace: Workspace, launch: Launch) -> bool:
 def _may_be_clock(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether a node may publish /clock: own code, or a program whose name says so."""
     package = workspace.find_package(node)
-    if package is not None:
+    if package:
         code = workspace.code.by_package.get(package.name)
-        if code is not None and not code.doubts:
+        if code and not code.doubts:
             programs = {program.name for program in code.programs}
             if node.executable not in programs:
                 return False  # there is none, which another rule says
@@ -424,7 +456,7 @@ def _is_told(workspace: Workspace) -> bool:
         for source in workspace.texts.read_sources(package, _PAGES):
             if _says_clock(source.text):
                 return True
-        for source in workspace.texts.read_sources(package, _CODE):
+        for source in workspace.texts.read_sources(package, CODE_ENDINGS):
             if _CLOCK.partition(".")[0] in source.text:
                 return True
     return False
@@ -439,6 +471,7 @@ _SIMULATION_TIME = Rule(
         "Such a node compares simulated stamps with the time of the machine. It takes messages "
         "and transforms for outdated and ignores them."
     ),
+    symptoms=(EXTRAPOLATION,),
     wrong="""
 Node(package='ros_gz_bridge', executable='parameter_bridge',
      arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock']),
@@ -457,8 +490,8 @@ def _wall_time(workspace: Workspace) -> Mismatches:
     rows = [row for row in bridge_rows(workspace) if row.is_published and row.ros_type == _CLOCK]
     if not rows or _is_mentioned(workspace, (_TIME,)):
         return
-    for _, node in workspace.launches.nodes:
-        if package_row(node.package).compares_time and node.when is True:
+    for node in workspace.launches.nodes:
+        if package_row(node.package).compares_time and node.when:
             message = (
                 f"{node.executable} uses the time of the machine, but the simulation has its own "
                 f"clock ({rows[0].location.file_and_line}): give the nodes use_sim_time"

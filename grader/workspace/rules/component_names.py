@@ -3,23 +3,24 @@
 It is compared as well whether something starts their containers.
 """
 
-import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping
+from functools import cache
 
 from grader.base.names import closest, near
+from grader.base.patterns import on_use
 from grader.base.source import Location
 from grader.base.text import quoted
-from grader.ros.installation.installation import Installation
 from grader.ros.launch.launch_model import Launch, LoadedComponent
 from grader.ros.package.package import Package
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
     Fact,
+    Facts,
     Mismatch,
+    Mismatches,
     Undecided,
-    corrections,
-    cost_of_guess,
+    charge_guess,
     warning,
 )
 from grader.workspace.rules.rule_table import (
@@ -27,26 +28,31 @@ from grader.workspace.rules.rule_table import (
     NO_PROGRAM,
     Rule,
 )
+from grader.workspace.rules.shared_symptoms import COMPONENT_CLASS, COMPONENT_RESOURCE
 
 _CONTAINERS = "rclcpp_components"
 _CMAKE = ("CMakeLists.txt", ".cmake")
 # A class that CMake computes.
-_COMPUTED = re.compile(r"rclcpp_components_register_nodes?\s*\(\s*+[^\s()][^()$]*+\$")
+_COMPUTED = on_use(r"rclcpp_components_register_nodes?\s*\(\s*+[^\s()][^()$]*+\$")
 _OTHER_WAY = "ament_index_register_resource"
 
 
-def component_facts(workspace: Workspace) -> Iterator[Fact]:
+def component_facts(workspace: Workspace) -> Facts:
     """Yield components that nothing registers, and containers that nothing starts."""
+    registered_in = cache(_registered_in)
     for package, launch in workspace.launches.roots:
         workspace.charge(1 + len(launch.components))
         for component in launch.components:
-            yield from _unregistered(workspace, package, component)
+            yield from _unregistered(workspace, package, component, registered_in)
         yield from _no_container(workspace, launch)
 
 
 def _unregistered(
-    workspace: Workspace, package: Package, component: LoadedComponent
-) -> Iterator[Fact]:
+    workspace: Workspace,
+    package: Package,
+    component: LoadedComponent,
+    registered_in: Callable[[Package], Mapping[str, Location]],
+) -> Facts:
     """Yield that a package of the workspace does not have the class that a container loads.
 
     It is certain where all is known that the package registers. Otherwise it is said only if there
@@ -54,17 +60,17 @@ def _unregistered(
     """
     plugin = component.plugin
     owner = package.find(component.package) if component.package is not None else None
-    if owner is None or plugin is None or not workspace.folder.means_one(package, owner.name):
+    if not owner or plugin is None or not workspace.folder.means_one(package, owner.name):
         return
     setup = owner.installation
-    if setup is None or setup.fault is not None:
+    if setup is None or setup.fault:
         return
     yield Compared("programs")
-    registered = _registered_in(setup)
+    registered = registered_in(owner)
     texts = [source.text for source in workspace.texts.read_sources(owner, _CMAKE)]
     if plugin in registered or any(plugin in text for text in texts):
         return
-    workspace.charge(cost_of_guess(len(registered)))
+    charge_guess(workspace, registered)
     is_open = bool(setup.unknown or setup.unread) or any(map(_may_register, texts))
     yield _no_component(owner.name, plugin, component.location, registered, is_open=is_open)
 
@@ -77,6 +83,10 @@ _COMPONENT_REGISTERED = Rule(
     why=(
         "The container reports that it did not find the class, and the node is missing. The "
         "container and its other components run on."
+    ),
+    symptoms=(
+        COMPONENT_CLASS,
+        COMPONENT_RESOURCE,
     ),
     wrong="""
 ComposableNodeContainer(
@@ -106,18 +116,19 @@ def _no_component(
     message = f"the package {package!r} registers no component {quoted(plugin)}"
     if meant is not None:
         related = registered[meant]
-        message = f"{message}; did you mean {quoted(meant)} ({related.file_and_line})?"
-        either = corrections(plugin, at, meant, related)
-        return Mismatch(_COMPONENT_REGISTERED, message, at, related, not is_open, either)
+        wrong = Mismatch(_COMPONENT_REGISTERED, message, at, related, not is_open)
+        return wrong.meaning(plugin, meant, related).offering(plugin, meant)
     if is_open:
         return Undecided("programs", f"which components {package} has is not evaluated")
     message = f"{message}; it registers {', '.join(registered) or 'none'}"
     return Mismatch(_COMPONENT_REGISTERED, message, at)
 
 
-def _registered_in(setup: Installation) -> Mapping[str, Location]:
+def _registered_in(package: Package) -> Mapping[str, Location]:
     """Return the components that a package registers, with their places."""
-    registered: dict[str, Location] = {}
+    registered = {}
+    setup = package.installation
+    assert setup  # as the caller knows
     for target in setup.targets:
         for component in target.components:
             registered[component.plugin] = setup.location(component.at)
@@ -153,7 +164,7 @@ LoadComposableNodes(target_container='parts', composable_node_descriptions=[
 )
 
 
-def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
+def _no_container(workspace: Workspace, launch: Launch) -> Mismatches:
     """Yield the containers that a launch file asks for and does not start, though it starts others.
 
     What may start more leaves open which there are.
@@ -163,8 +174,8 @@ def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
         return
     for component in launch.components:
         name = component.container
-        if name and component.when is True and name not in started:
-            workspace.charge(cost_of_guess(len(started)))
+        if name and component.when and name not in started:
+            charge_guess(workspace, started)
             meant = closest(name, started) or min(started)
             at = started[meant]
             message = (
@@ -179,7 +190,7 @@ def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | N
 
     The result is None where not all of them are known, or none is a container.
     """
-    containers: dict[str, Location] = {}
+    containers = {}
     for container in launch.containers:
         if container.name is None:
             return None

@@ -2,13 +2,12 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from grader.base.names import closest, near
+from grader.base.names import closest, first_part, last_part, near
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import PARAMETERS, is_misspelt_key
 from grader.ros.known.package_rows import (
     controller_actions,
-    controller_row,
     controller_types,
     is_known_controller,
 )
@@ -37,9 +36,14 @@ from grader.workspace.rules.names import (
     Use,
     corrections,
 )
-from grader.workspace.rules.rule_table import (
-    NO_CONTROLLER,
-    Rule,
+from grader.workspace.rules.rule_table import NO_CONTROLLER, Rule, Symptom
+from grader.workspace.rules.shared_symptoms import (
+    CLASS_DOES_NOT_EXIST,
+    CONTROLLER_NOT_LOADED,
+    INTERFACE_MISSING,
+    INTERFACE_NOT_AVAILABLE,
+    INTERFACES_NOT_ACCEPTED,
+    SERVICE_NOT_CONTACTED,
 )
 
 _LIKENESS = 0.85  # of a type to one of another package
@@ -62,7 +66,7 @@ def controller_facts(workspace: Workspace) -> Facts:
     for controller in controllers:
         yield from _other_type(workspace, controller)
         section = sections.get(controller.name)
-        if section is None:
+        if not section:
             yield from _no_parameters(workspace, controller, sections)
         else:
             yield from _no_list(controller, section)
@@ -82,6 +86,7 @@ _CONTROLLER_HARDWARE = Rule(
         "The controller manager parses <ros2_control> for its hardware. Without the element it "
         "has no interfaces, so no controller can move a joint."
     ),
+    symptoms=(SERVICE_NOT_CONTACTED,),
     wrong="""
 Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
 """,
@@ -110,7 +115,7 @@ def _no_hardware(workspace: Workspace) -> Mismatches:
     robots = workspace.robots
     if any(robot.systems for robot in robots.known) or not robots.has_all_interfaces:
         return
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         if node.executable == CONTROL_NODE:
             message = "the controller manager is started, but the robot has no <ros2_control>"
             yield Mismatch(_CONTROLLER_HARDWARE, message, node.location)
@@ -126,6 +131,24 @@ _CONTROLLER_TYPE = Rule(
         "pluginlib finds no such class. The controller manager prints 'Loader for controller "
         "... not found', and the controller is not loaded."
     ),
+    symptoms=(
+        CLASS_DOES_NOT_EXIST,
+        Symptom(
+            "controller-not-found",
+            pattern=(
+                r"Loader for controller '(?P<controller>[^']{1,200}+)' \(type "
+                r"'(?P<type>[^']{1,200}+)'\) not found\."
+            ),
+            source=(
+                "ros-controls/ros2_control 53b9999d1, controller_manager/src/"
+                "controller_manager.cpp:1253"
+            ),
+            sentence="No installed package has the type of the controller.",
+            example="Loader for controller 'arm' (type 'arm_ctrl/Arm') not found.",
+            within=("type",),
+        ),
+        CONTROLLER_NOT_LOADED,
+    ),
     wrong="joint_state_broadcaster: {type: joint_state_broadcaster/JointStatePublisher}",
     right="joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}",
     frame="types/controllers.yaml",
@@ -139,23 +162,22 @@ def _other_type(workspace: Workspace, controller: Controller) -> Mismatches:
     a similar name. Nothing is said of types that a release, a plugin in the workspace or a package
     of it may have, and of other packages only if there is a similar type.
     """
-    written, types = controller.type.text or "", controller_types()
+    written = controller.type.text or ""
+    types = controller_types()
     package, _, class_name = written.partition("/")
     is_known = any(kind.startswith(f"{package}/") for kind in types)
     if _may_have_type(workspace, written, is_known=is_known):
         return
     same_class = [kind for kind in types if kind.partition("/")[2] == class_name]
     other = other_name("controller", written, workspace.releases)
-    meant = other.name or None if other is not None else None
+    meant = other.name or None if other else None
     meant = meant or _meant_type(written, same_class, is_known=is_known)
     if meant is None and not is_known:
         return
-    guess = f"; did you mean {meant!r}?" if meant is not None else ""
-    message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
+    message = f"{controller.name}.type: there is no controller of the type {written!r}"
     is_certain = is_known or other is not None or near(written, same_class) is not None
-    at = controller.type.location
-    either = corrections(written, at, meant)
-    yield Mismatch(_CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
+    wrong = Mismatch(_CONTROLLER_TYPE, message, controller.type.location, is_certain=is_certain)
+    yield wrong.meaning(written, meant)
 
 
 def _meant_type(written: str, same_class: Sequence[str], *, is_known: bool) -> str | None:
@@ -175,15 +197,14 @@ def _may_have_type(workspace: Workspace, written: str, *, is_known: bool) -> boo
 
     `is_known` says whether all types of its package are known.
     """
-    package = written.partition("/")[0]
-    is_of_workspace = any(each.name == package for each in workspace.packages)
-    if is_of_workspace or workspace.texts.has_plugin(written):
+    package = first_part(written)
+    if package in workspace.own_packages or workspace.texts.has_plugin(written):
         return True
     if is_known_controller(written) or releases_with("controller", written):
-        return other_name("controller", written, workspace.releases) is None
+        return not other_name("controller", written, workspace.releases)
     if is_known or not any(each.depends_on(package) for each in workspace.packages):
         return False
-    return near(package, [kind.partition("/")[0] for kind in controller_types()]) is None
+    return near(package, [first_part(kind) for kind in controller_types()]) is None
 
 
 _CONTROLLER_PARAMETERS = Rule(
@@ -223,7 +244,7 @@ def _no_parameters(
 
     It has neither a section of its name, nor one of all nodes, nor a file of its own.
     """
-    needs_joints = bool(controller_row(controller.type.text).joints)
+    needs_joints = bool(controller.row.joints)
     if needs_joints and "**" not in sections and not controller.has_file:
         message = (
             f"the controller {controller.name!r} has no parameters: there is no key "
@@ -259,9 +280,9 @@ command_interfaces: [position]
 
 def _no_list(controller: Controller, section: YamlNode) -> Mismatches:
     """Yield the parameters of a controller that are lists of joints, and are given a string."""
-    for key in controller_row(controller.type.text).joints:
+    for key in controller.row.joints:
         given = section.get(key) if key.endswith("s") else None
-        if given is not None and given.text:
+        if given and given.text:
             message = (
                 f"{controller.name}.{key} is given a string; the controller stops without a "
                 f"list: [{given.text}]"
@@ -277,6 +298,25 @@ _CLAIMED_ONCE = Rule(
     why=(
         "The resource manager hands out each command interface once. The second claim raises an"
         " error, and the controller does not become active."
+    ),
+    symptoms=(
+        Symptom(
+            "interface-claimed",
+            pattern=(
+                r"Resource conflict for controller '(?P<controller>[^']{1,200}+)'\. Command "
+                r"interface '(?P<joint>[^'/]{1,200}+)/[^']{1,200}+' is already claimed"
+            ),
+            source=(
+                "ros-controls/ros2_control 53b9999d1, controller_manager/src/"
+                "controller_manager.cpp:2696"
+            ),
+            sentence="Two controllers claim one command interface.",
+            example=(
+                "Resource conflict for controller 'arm_controller'. Command interface "
+                "'elbow/position' is already claimed."
+            ),
+            within=("joint",),
+        ),
     ),
     wrong="""
 joints: [arm_joint, arm_joint]
@@ -299,7 +339,7 @@ def _claimed_twice(controller: Controller, section: YamlNode) -> Mismatches:
     Steering controllers, which have the parameters of an older release as well, claim those of
     one release.
     """
-    needed = controller_row(controller.type.text).joints
+    needed = controller.row.joints
     if len(needed) > _MAX_KEYS:
         return
     claimed: dict[str, Location] = {}
@@ -325,11 +365,9 @@ def _section_corrections(
     meant = closest(controller.name, sections)
     if meant is not None:
         return corrections(meant, sections[meant].location, controller.name, controller.location)
-    for _, tree in workspace.installed.trees:
+    for tree in workspace.installed.trees:
         section = tree.get(controller.name)
-        if section is None or not isinstance(section.value, dict):
-            continue
-        for key, node in section.value.items():
+        for key, node in section.table.items() if section else ():
             if is_misspelt_key(key, node):
                 return corrections(key, node.location, PARAMETERS)
     return ()
@@ -350,7 +388,7 @@ def _needed_in(
 def _entries(section: YamlNode, key: str) -> Sequence[YamlNode]:
     """Return the entries of a list of parameters, or the one that stands in its place."""
     given = section.get(key)
-    if given is None:
+    if not given:
         return ()
     return given.items or [given]
 
@@ -358,12 +396,11 @@ def _entries(section: YamlNode, key: str) -> Sequence[YamlNode]:
 def needed_interfaces(workspace: Workspace) -> frozenset[str]:
     """Return the command interfaces that controllers need, each as joint/interface."""
     sections = parameters_of_controllers(workspace)
-    needed: set[str] = set()
+    needed = set()
     for controller in defined_controllers(workspace):
         section = sections.get(controller.name)
-        if section is not None:
-            row = controller_row(controller.type.text)
-            for joint, names in _needed_in(section, row.joints):
+        if section:
+            for joint, names in _needed_in(section, controller.row.joints):
                 needed |= {f"{joint.text}/{name}" for name in names}
     return frozenset(needed)
 
@@ -376,6 +413,11 @@ _CONTROLLER_INTERFACE = Rule(
     why=(
         "The controller manager does not activate a controller whose interfaces are missing. "
         "Its spawner ends with an error, and the joints do not move."
+    ),
+    symptoms=(
+        INTERFACE_MISSING,
+        INTERFACES_NOT_ACCEPTED,
+        INTERFACE_NOT_AVAILABLE,
     ),
     wrong="""
 joints: [arm_joint]
@@ -403,7 +445,7 @@ def _no_interface(workspace: Workspace, controller: Controller, section: YamlNod
     robots = robots_for_file(workspace, section.source.path).robots
     interfaces = command_interfaces(robots)
     are_comparable = _are_all_joints(workspace, robots, interfaces)
-    for joint, needed in _needed_in(section, controller_row(controller.type.text).joints):
+    for joint, needed in _needed_in(section, controller.row.joints):
         name = joint.text or ""
         message = f"{controller.name} needs the command interface {name}"
         if name in interfaces:
@@ -417,7 +459,7 @@ def _beside(workspace: Workspace, controller: Controller, section: YamlNode) -> 
     """Return the parameters of a controller in the file that defines it, else those of its name."""
     for keys, node in named_sections(workspace):
         is_beside = node.source.path == controller.type.source.path and node.get("joints")
-        if is_beside and keys[-1].rpartition("/")[2] == controller.name:
+        if is_beside and last_part(keys[-1]) == controller.name:
             return node
     return section
 
@@ -430,7 +472,7 @@ def _no_state(workspace: Workspace, controller: Controller, section: YamlNode) -
     if not is_known_controller(controller.type.text):
         return
     offered = state_interfaces(robots_for_file(workspace, section.source.path).robots)
-    said = set[str]()
+    said = set()
     for kind, joint, at in _needed_states(controller, section):
         interfaces = offered.get(joint, (kind,))
         if kind in said or kind in interfaces or may_be_offered(workspace, kind, "state_interface"):
@@ -456,15 +498,15 @@ def _needed_states(
 def _small_text(section: YamlNode, key: str) -> str:
     """Return the text of a parameter in small letters; empty where it is not given."""
     node = section.get(key)
-    return (node.text or "").lower() if node is not None else ""
+    return (node.text or "").lower() if node else ""
 
 
 def _feedback_states(
     controller: Controller, section: YamlNode
 ) -> Iterator[tuple[str, str, Location]]:
     """Yield the same of the feedback that a type of controllers reads of its own."""
-    feedback = controller_row(controller.type.text).feedback
-    if feedback is None:
+    feedback = controller.row.feedback
+    if not feedback:
         return
     kinds = {"": feedback.on, "true": feedback.on, "false": feedback.off}
     kind_read = kinds.get(_small_text(section, feedback.switch), "")
@@ -478,7 +520,7 @@ def _are_all_joints(
     workspace: Workspace, robots: Sequence[KnownRobot], names: Collection[str]
 ) -> bool:
     """Return whether all of some names, if any, are joints of robots that are read whole."""
-    joints: set[str] = set()
+    joints = set()
     for known_robot in robots:
         joints |= {joint.name for joint in known_robot.robot.joints}
     return bool(names) and joints.issuperset(names) and workspace.robots.has_all_interfaces
@@ -496,17 +538,17 @@ def _missing_interfaces(
     there = f"<ros2_control> has {', '.join(sorted(offered)) or 'none'} ({at.file_and_line})"
     for missing in needed:
         if missing not in offered and not may_be_offered(workspace, missing):
-            either = corrections(missing, joint.location, near(missing, offered), at)
             text = f"{message}/{missing}; {there}"
-            yield Mismatch(_CONTROLLER_INTERFACE, text, joint.location, at, corrections=either)
+            wrong = Mismatch(_CONTROLLER_INTERFACE, text, joint.location, at)
+            yield wrong.correcting(missing, near(missing, offered), at)
 
 
 def _action_facts(workspace: Workspace) -> Facts:
     """Yield the controllers whose actions own nodes ask for."""
     namespaces = _namespaces(workspace)
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         own_node = workspace.code.own_node(node)
-        for endpoint in own_node.endpoints if own_node is not None else ():
+        for endpoint in own_node.endpoints if own_node else ():
             topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
             controller, _, action = (topic or "").rpartition("/")
             namespace, _, name = controller.strip("/").rpartition("/")
@@ -518,9 +560,7 @@ def _action_facts(workspace: Workspace) -> Facts:
 def _namespaces(workspace: Workspace) -> set[str]:
     """Return the namespaces of controllers: those of keys, of controller managers and of Gazebo."""
     names = {"/".join(keys).rpartition("/")[0] for keys, _ in named_sections(workspace)}
-    names |= {
-        node.namespace or "" for _, node in workspace.launches.nodes if node.package == MANAGER
-    }
+    names |= {node.namespace or "" for node in workspace.launches.nodes if node.package == MANAGER}
     for robot in workspace.robots.known:
         names |= {element.text or "" for element in robot.root.iter("namespace")}
     return {name.strip("/ ") for name in names}

@@ -30,10 +30,10 @@ def default_value(workspace: Workspace, node: str, parameter: str) -> ParameterV
         parameter: The name of the parameter.
     """
     owners = workspace.parameters.owners.get(node, [])
-    defaults: dict[str, ParameterValue | None] = {}
+    defaults = {}
     for given in owners:
         for default in _defaults(workspace, node, given, parameter):
-            value = default.value if default is not None else None
+            value = default.value if default else None
             defaults[repr(value)] = default
     if len(defaults) > 1:
         return ParameterValue(_NOT_KNOWN, owners[0].node.location)
@@ -45,10 +45,10 @@ def _defaults(
 ) -> Iterator[ParameterValue | None]:
     """Yield the defaults that a node may have, as it is started: one for each release."""
     node = given.node
-    if workspace.find_package(node) is not None:
+    if workspace.find_package(node):
         yield _own_default(workspace, node, parameter)
         return
-    kind = f"{node.package}/{node.executable}"
+    kind = node.program_path
     if node.executable in SPAWNERS:
         kinds = {
             controller.type.text or ""
@@ -60,7 +60,7 @@ def _defaults(
         yield ParameterValue(_NOT_KNOWN, node.location)
         return
     table = node_rows(kind)
-    read = [release for release in COVERED if table is None or table.is_known_in(release)]
+    read = [release for release in COVERED if not table or table.is_known_in(release)]
     for release in workspace.releases or read:
         default = default_in(GivenNode(kind, name, given.values, None), parameter, release)
         yield ParameterValue(default, node.location) if default is not None else None
@@ -70,10 +70,10 @@ def _own_default(workspace: Workspace, node: StartedNode, parameter: str) -> Par
     """Return the value with which a node of the workspace declares a parameter."""
     unknown = ParameterValue(_NOT_KNOWN, node.location)
     own_node = workspace.code.own_node(node)
-    if own_node is None:
+    if not own_node:
         return unknown
     for_all = row_for(_EVERY_NODE, parameter)
-    if for_all is not None:
+    if for_all:
         return ParameterValue(_scalar_or_list(for_all.default), node.location)
     same_name = [
         candidate for candidate in own_node.parameters if candidate.name in (parameter, None)
@@ -103,7 +103,7 @@ def _declared_default(
 
 def _scalar_or_list(value: Value) -> Value:
     """Return a default as a parameter has it; Unknown where it is not known."""
-    items = [*value] if isinstance(value, list | tuple) else [value]
+    items = list(value) if isinstance(value, list | tuple) else [value]
     if not all(isinstance(item, SCALARS) for item in items):
         return _NOT_KNOWN
     return items if isinstance(value, list | tuple) else value

@@ -15,8 +15,7 @@ from grader.workspace.rules.names import (
     Facts,
     Mismatch,
     Mismatches,
-    corrections,
-    cost_of_guess,
+    charge_guess,
     warning,
 )
 from grader.workspace.rules.rule_table import (
@@ -49,10 +48,10 @@ _WITH_NODES = ("rclcpp", "rclcpp_action", "rclcpp_components", "rclcpp_lifecycle
 def dependency_facts(workspace: Workspace) -> Facts:
     """Yield the packages that a package uses and does not declare."""
     for package in workspace.packages:
-        if package.manifest is None or package.manifest.refusals:
+        if not package.manifest or package.manifest.refusals:
             continue
-        used: dict[str, PackageUse] = {}
-        uses: list[PackageUse] = []
+        used = {}
+        uses = []
         for use in used_packages(workspace, package):
             uses.append(use)
             # What a launch file of another package starts, that package has to declare.
@@ -108,12 +107,13 @@ def _built_before(workspace: Workspace, package: Package) -> Mismatches:
     colcon orders packages by what package.xml declares. What a release has, too, CMake may find
     there.
     """
-    setup, manifest = package.installation, package.manifest
-    if setup is None or manifest is None:
+    setup = package.installation
+    manifest = package.manifest
+    if not setup or not manifest:
         return
     for required in setup.found_packages:
         needed = package.find(required.name)
-        if needed is None or needed is package or not _is_sought_here(required):
+        if not needed or needed is package or not _is_sought_here(required):
             continue
         if needed.name in _reached(workspace, package):
             continue
@@ -122,21 +122,24 @@ def _built_before(workspace: Workspace, package: Package) -> Mismatches:
             f"{package.name!r} does not declare it: colcon may build it later, and then the build "
             f"stops; add <depend>{required.name}</depend>"
         )
-        at, start = setup.location(required.at), manifest.name_location
-        yield Mismatch(_BUILD_ORDER, message, at, start, word=required.name)
+        at = setup.location(required.at)
+        start = manifest.name_location
+        wrong = Mismatch(_BUILD_ORDER, message, at, start, word=required.name)
+        yield wrong.offering("", f"<depend>{required.name}</depend>", start)
 
 
 def _reached(workspace: Workspace, package: Package) -> set[str]:
     """Return the packages that package.xml declares, with what those of the workspace declare."""
-    pending, reached = [package], set[str]()
+    pending = [package]
+    reached = set()
     while pending:
         manifest = pending.pop().manifest
-        for name in manifest.dependencies if manifest is not None else ():
+        for name in manifest.dependencies if manifest else ():
             workspace.charge(1)
             if name not in reached:
                 reached.add(name)
                 inner = package.find(name)
-                pending += [inner] if inner is not None else []
+                pending += [inner] if inner else []
     return reached
 
 
@@ -168,13 +171,14 @@ def _undeclared(
     Those that packages of the workspace bring, which are declared, rosdep installs.
     """
     declared = _declared(package)
-    brought, found_with = _brought_by(package, declared), _found_with(declared)
+    brought = _brought_by(package, declared)
+    found_with = _found_with(declared)
     start = manifest.name_location
     for name, use in used.items():
         if name in declared or _is_declared_otherwise(name, declared):
             continue
         at = use.location
-        workspace.charge(cost_of_guess(len(declared)))
+        charge_guess(workspace, declared)
         meant = near(name, declared)
         if meant is not None and _is_there(package, name) and _is_there(package, meant):
             meant = None  # another package
@@ -190,9 +194,9 @@ def _undeclared(
             message += (
                 f"only {bringer!r} brings: the package builds and runs as long as that needs it"
             )
-        either = corrections(name, at, meant, start if meant not in used else None)
         lacked = name if not guess else ""
-        wrong = Mismatch(DEPENDENCY_DECLARED, message, at, start, bringer is None, either)
+        wrong = Mismatch(DEPENDENCY_DECLARED, message, at, start, bringer is None)
+        wrong = wrong.correcting(name, meant, start if meant not in used else None)
         yield wrong._replace(word=name, lacked=lacked, tag=use.tag)
 
 
@@ -229,16 +233,19 @@ def _of_other_kind(package: Package, manifest: Manifest, uses: Sequence[PackageU
     for declared in manifest.declared:
         tags.setdefault(declared.name, set()).add(declared.tag)
     places = {declared.name: declared.location for declared in manifest.declared}
-    said = set[str]()
+    said = set()
     for use in uses:
-        name, given = use.name, tags.get(use.name, set())
+        name = use.name
+        given = tags.get(use.name, set())
         is_here = package.holds(use.location.path)
         if not given or use.is_for_tests or name in said or not is_here:
             continue
         if use.is_built and given <= _FOR_RUN:
-            kind, other = "when it runs", "build"
+            kind = "when it runs"
+            other = "build"
         elif (not use.is_built or name in _WITH_NODES) and given <= _FOR_BUILD:
-            kind, other = "to be built", "run"
+            kind = "to be built"
+            other = "run"
         else:
             continue
         message = (
@@ -246,13 +253,15 @@ def _of_other_kind(package: Package, manifest: Manifest, uses: Sequence[PackageU
             f"its {other} needs it: write <depend>{name}</depend>"
         )
         said.add(name)
-        yield warning(_DEPENDENCY_KIND, message, places[name], use.location)
+        wrong = warning(_DEPENDENCY_KIND, message, places[name], use.location)
+        old, new = (f"<{tag}>{name}</{tag}>" for tag in (max(given), "depend"))
+        yield wrong.offering(old, new)
 
 
 def _guess(package: Package, manifest: Manifest, name: str, meant: str | None) -> str:
     """Return what package.xml has in place of a package that it does not declare."""
     misplaced = manifest.misplaced.get(name)
-    if misplaced is not None:
+    if misplaced:
         return f": <export> has it (line {misplaced.line}), where it has no effect"
     if meant is None:
         return ""
@@ -266,7 +275,7 @@ def _brought_by(package: Package, declared: Collection[str]) -> dict[str, str]:
     brought: dict[str, str] = {}
     for name in sorted(declared):
         dependency = package.find(name)
-        if dependency is not None and dependency.manifest:
+        if dependency and dependency.manifest:
             for inner in dependency.manifest.dependencies:
                 brought.setdefault(inner, name)
     return brought
@@ -298,7 +307,7 @@ def _is_there(package: Package, name: str) -> bool:
 
 def _declared(package: Package) -> set[str]:
     """Return the dependencies of a package, those that its metapackages bring, and the package."""
-    assert package.manifest is not None
+    assert package.manifest
     declared = {*package.manifest.dependencies, *package.names}
     for name in [*declared]:
         declared.update(package_row(name).members, packages_brought_by(name))

@@ -6,6 +6,7 @@ It is what stops a build or a launch file, and what is wrong in RViz files.
 from collections.abc import Iterator
 
 from grader.base.errors import NotDecided
+from grader.base.names import last_part
 from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.base.text import counted
@@ -21,6 +22,7 @@ from grader.ros.package.found_problems import (
 )
 from grader.ros.package.installed_files import are_installs_known
 from grader.ros.package.package import MANIFEST, Package
+from grader.workspace.graph.rviz_ends import list_rviz_files
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.reading import read_agreement
 
@@ -38,9 +40,12 @@ def _file_problems(workspace: Workspace) -> Iterator[Problem]:
         files = counted(len(paths), "launch file")
         message = f"the package has {files} of ROS 1, which ros2 launch does not read"
         yield Problem(kinds.OF_ROS1, message, Location(package.path(paths[0]), 1, 1))
-    for package in workspace.packages:
-        for path in package.rviz_files:
-            yield from _rviz_problems(package, path)
+    for file in list_rviz_files(workspace):
+        seen = set()  # of displays of another release, only the first is said
+        for problem in sorted_problems(file.problems):
+            if problem.kind is not kinds.ROS1_CLASS or problem.kind not in seen:
+                seen.add(problem.kind)
+                yield problem
 
 
 def _launch_problems(workspace: Workspace) -> Iterator[Problem]:
@@ -48,20 +53,20 @@ def _launch_problems(workspace: Workspace) -> Iterator[Problem]:
 
     A missing program is also a name that does not agree.
     """
-    roots = {launch.source.path for _, launch in workspace.launches.roots}
+    roots = {launch.source.path for launch in workspace.launches.outermost}
     mismatches = read_agreement(workspace).mismatches
     wrong_programs = {each.location for each in mismatches if each.family == "programs"}
     for _, path, launch in workspace.launches.files:
-        if launch.syntax is not None:
+        if launch.syntax:
             yield launch_syntax(launch, launch.syntax)
         is_root = launch.source.path in roots
-        hard_coded: set[Location] = set()  # where paths of one machine are written
+        hard_coded = set()  # where paths of one machine are written
         for problem in launch_problems(_started(workspace, path, launch)) if is_root else ():
             if problem.kind is kinds.HARD_CODED:
                 place = _where_written(launch, problem.location)
-                if place is not None and place in hard_coded:
+                if place and place in hard_coded:
                     continue  # several files of one folder
-                if place is not None:
+                if place:
                     hard_coded.add(place)
                     problem = problem._replace(location=place, around=problem.location)  # noqa: PLW2901
             if problem.location not in wrong_programs:
@@ -86,7 +91,7 @@ def _uninstalled_launch_files(workspace: Workspace) -> Iterator[Problem]:
                 files.append(path)
         setup = package.installation
         is_module = f"{_LAUNCH_FOLDER}__init__.py" in package.tree.files
-        if not files or is_module or setup is None or not are_installs_known(package):
+        if not files or is_module or not setup or not are_installs_known(package):
             continue
         if setup.stops:  # such as a file of this folder that is not there
             continue
@@ -131,7 +136,7 @@ def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
     These are the faults that its caller may correct, and those of arguments that a stated release
     has. Who starts the file gives it values, and a file that may include it declares arguments.
     """
-    is_closed = not _may_be_included(workspace, path.rpartition("/")[2], launch)
+    is_closed = not _may_be_included(workspace, last_part(path), launch)
     faults = []
     for fault in launch.in_releases(workspace.releases).faults:
         having = releases_with("argument", fault.argument) if fault.argument else ()
@@ -150,16 +155,7 @@ def _may_be_included(workspace: Workspace, name: str, launch: Launch) -> bool:
         return True
     if count > (name in launch.source.text):
         return True
-    for _, _, other in workspace.launches.files:
+    for other in workspace.launches.every:
         if not all(unknown.follows_error for unknown in other.unknown):
             return True
     return False
-
-
-def _rviz_problems(package: Package, path: str) -> Iterator[Problem]:
-    """Yield the problems of an RViz file; of one of another release only the first display."""
-    seen = set()
-    for problem in sorted_problems(package.rviz(path).problems):
-        if problem.kind is not kinds.ROS1_CLASS or problem.kind not in seen:
-            seen.add(problem.kind)
-            yield problem

@@ -1,17 +1,19 @@
 """Files: the paths that launch files, xacro and YAML name, and whether they are installed."""
 
-import posixpath
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from posixpath import basename, dirname, join, normpath, split
 
-from grader.base.names import closest, near
+from grader.base.names import closest, first_part, near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location, Source
 from grader.ros.installation.installation import Installation
 from grader.ros.installation.places import PREFIX, SHARE, share_parts
 from grader.ros.known.package_rows import names_of_read_files, package_row, written_files
 from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.package.file_places import DROPS_FOLDERS
 from grader.ros.package.found_problems import why_no_match
 from grader.ros.package.installed_files import (
     are_installs_known,
@@ -20,6 +22,7 @@ from grader.ros.package.installed_files import (
     similar_file,
 )
 from grader.ros.package.package import Package
+from grader.ros.xml.elements import first_text
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
@@ -28,28 +31,25 @@ from grader.workspace.rules.names import (
     Mismatch,
     Mismatches,
     Undecided,
+    charge_guess,
     corrections,
     cost_of_guess,
     warning,
 )
-from grader.workspace.rules.rule_table import (
-    NO_FILE,
-    SIMILAR,
-    Rule,
-)
+from grader.workspace.rules.rule_table import NO_FILE, SIMILAR, Rule, Symptom
 
 # A path ends at a quote, a tag or a space, in YAML's flow style and in a substitution also at a
 # comma or a bracket.
-_FIND = re.compile(
+_FIND = on_use(
     r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?((?:[^\"'<>\s$,()[\]{}]|,(?=\w))*)(?=[\"'<\s,)\]}])"
 )
-_PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
+_PACKAGE = on_use(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
 _MAX_TAG = 80  # characters of a tag and the spaces behind it
 _LAUNCH_FOLDER = "launch/"
-_PROPERTY = re.compile(r"<xacro:property\b[^<>]*?\bname\s*=\s*[\"'](\w+)[\"']")
+_PROPERTY = on_use(r"<xacro:property\b[^<>]*?\bname\s*=\s*[\"'](\w+)[\"']")
 # Files of text that are read, which no download leaves out for their size; and programs.
-_URI = re.compile(r"package://([\w-]+)/([\w./-]+)")  # of a whole text
-_PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
+_URI = on_use(r"package://([\w-]+)/([\w./-]+)")  # of a whole text
+_PATH = on_use(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 
 def file_facts(workspace: Workspace) -> Facts:
@@ -66,7 +66,7 @@ def _find_faults(workspace: Workspace, every: Iterable["PathInFile"]) -> Facts:
     """Yield the paths that are compared, and then what is wrong with them."""
     first_named: dict[tuple[str, Location], PathInFile] = {}
     for named in every:
-        yield Compared("files", posixpath.normpath(named.path).removeprefix(f"{PREFIX}/"))
+        yield Compared("files", normpath(named.path).removeprefix(f"{PREFIX}/"))
         first = first_named.setdefault((named.path, named.location), named)
         if named.is_needed:
             first_named[named.path, named.location] = first._replace(is_needed=True)
@@ -78,10 +78,11 @@ def _find_faults(workspace: Workspace, every: Iterable["PathInFile"]) -> Facts:
                 yield fact
 
 
-class PathInFile(NamedTuple):
+class PathInFile(Named):
     """A path below the prefix, with the package whose file names it.
 
-    It says whether the path is certainly looked for.
+    It says whether the path is certainly looked for. The path of a file of the package behind a
+    slash, which is not below the prefix, is one by mistake.
 
     `is_needed` says whether a program certainly reads the file and never writes it, and `is_output`
     whether an own node, which is given the path, may write it.
@@ -116,19 +117,15 @@ def _paths_in_source(
     """Yield the paths that a file of a robot or of parameters names."""
     for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
         start = match.start()
+        before = source.text[max(0, start - _MAX_TAG) : start].rstrip()
         is_used = is_read and not _is_unused_property(workspace, source, start)
         yield PathInFile(
             package=package,
             path=f"{SHARE}/{match[1]}/{match[2]}",
             location=source.at(start),
             is_read=is_used,
-            is_needed=_is_in_parameters(source, start),
+            is_needed=before.endswith("<parameters>"),  # which gz_ros2_control reads
         )
-
-
-def _is_in_parameters(source: Source, at: int) -> bool:
-    """Return whether a place is the text of <parameters>, which gz_ros2_control reads."""
-    return source.text[max(0, at - _MAX_TAG) : at].rstrip().endswith("<parameters>")
 
 
 def _robots_left_out(workspace: Workspace, package: Package) -> frozenset[str]:
@@ -141,14 +138,14 @@ def _robots_left_out(workspace: Workspace, package: Package) -> frozenset[str]:
     robots = [path for path in package.tree.files if path.endswith((".urdf", ".xacro"))]
     if not are_installs_known(package):
         return frozenset()
-    counts = Counter(map(posixpath.basename, robots))
+    counts = Counter(map(basename, robots))
     are_others_installed = not installed.isdisjoint(robots)
-    launched: set[str] = set()
-    for _, _, launch in workspace.launches.files:
-        launched |= {posixpath.basename(named.path or "") for named in launch.named("urdf")}
-    left_out: set[str] = set()
+    launched = set()
+    for launch in workspace.launches.every:
+        launched |= {basename(named.path or "") for named in launch.named("urdf")}
+    left_out = set()
     for path in robots:
-        name = posixpath.basename(path)
+        name = basename(path)
         has_others = are_others_installed or counts[name] > 1
         if has_others and path not in installed and name not in launched:
             left_out.add(package.path(path))
@@ -162,12 +159,15 @@ def _paths_in_launch_file(
     beside = None
     # From the folder of the sources, a launch file finds what is beside it.
     if own_path not in package.installed.values():
-        beside = f"{PREFIX}/{package.share}{posixpath.dirname(own_path)}/"
+        beside = f"{PREFIX}/{package.share}{dirname(own_path)}/"
     for text in _list_texts(workspace, launch):
-        paths = _PATH.findall(text.text or "")
-        uri = _URI.fullmatch(text.text or "")
-        if uri is not None:
+        written = text.text or ""
+        paths = _PATH.findall(written)
+        uri = _URI.fullmatch(written)
+        if uri:
             paths.append(f"{SHARE}/{uri[1]}/{uri[2]}")
+        if text.is_whole and written.startswith("/") and written[1:] in package.tree.files:
+            paths.append(written)
         for path in paths:
             is_beside = beside is not None and path.startswith(beside)
             is_read = text.is_read and not is_beside
@@ -184,12 +184,12 @@ def _is_unused_property(workspace: Workspace, source: Source, at: int) -> bool:
     """Return whether a place is in the value of a property of xacro that no other place names."""
     tag = source.text[source.text.rfind("<", 0, at) : at]
     name = _PROPERTY.match(tag)
-    if name is None:
+    if not name:
         return False
     return name[1] not in workspace.robots.words_in_expressions
 
 
-class _Text(NamedTuple):
+class _Text(Named):
     """A text of a launch file that may name files, and whether it is certainly used."""
 
     text: str | None
@@ -197,6 +197,7 @@ class _Text(NamedTuple):
     is_read: bool = True
     is_output: bool = False  # whether an own node gets it, which may write the file
     is_needed: bool = False  # whether a program reads the file, and never writes it
+    is_whole: bool = False  # whether it is a path as a program gets it
 
 
 def _list_texts(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
@@ -211,7 +212,7 @@ def _list_texts(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
     for node in launch.nodes:
         yield from _texts_given(node, is_own=workspace.find_package(node) is not None)
     for reference in launch.references:
-        yield _Text(reference.path, reference.location, is_needed=True)
+        yield _Text(reference.path, reference.location, is_needed=True, is_whole=True)
 
 
 def _texts_given(node: StartedNode, *, is_own: bool) -> Iterator[_Text]:
@@ -223,7 +224,7 @@ def _texts_given(node: StartedNode, *, is_own: bool) -> Iterator[_Text]:
     for word in node.arguments or ():
         yield _Text(word, node.location, is_read, is_own)
     for given in node.parameters or ():
-        yield _Text(given.path, given.location, is_read, is_needed=is_read)
+        yield _Text(given.path, given.location, is_read, is_needed=is_read, is_whole=True)
         for name, parameter in given.values.items():
             if isinstance(parameter.value, str):
                 is_needed = is_read and not is_own and name in names_of_read_files()
@@ -232,10 +233,15 @@ def _texts_given(node: StartedNode, *, is_own: bool) -> Iterator[_Text]:
 
 def _find_fault(workspace: Workspace, named: PathInFile) -> Facts:
     """Yield that no file is installed at a path, if this is certain."""
-    package, at = named.package, named.location
+    package = named.package
+    at = named.location
+    if not named.path.startswith(SHARE):
+        message = f"the launch file looks for {named.path}: {DROPS_FOLDERS}"
+        yield Mismatch(FILE_INSTALLED, message, at)
+        return
     name, rest = share_parts(named.path)
     owner = package.find(name)
-    if owner is None:
+    if not owner:
         yield from _no_package(workspace, named)
         return
     target = f"share/{name}/{rest}"
@@ -289,13 +295,13 @@ def _no_package(workspace: Workspace, named: PathInFile) -> Mismatches:
 
     Others may be installed; of a well-known one it is compared which launch files it has.
     """
-    package, at = named.package, named.location
+    package = named.package
+    at = named.location
     name, rest = share_parts(named.path)
-    workspace.charge(cost_of_guess(len(workspace.packages)))
-    meant = near(name, [other.name for other in workspace.packages])
+    charge_guess(workspace, workspace.packages)
+    meant = near(name, workspace.own_packages)
     if meant is not None and not package.depends_on(name):
-        message = f"there is no package {name!r}; did you mean {meant!r}?"
-        yield Mismatch(_FILE_PACKAGE, message, at, corrections=corrections(name, at, meant))
+        yield Mismatch(_FILE_PACKAGE, f"there is no package {name!r}", at).meaning(name, meant)
     elif rest.startswith(_LAUNCH_FOLDER):
         yield from _misspelt_launch_file(name, rest.removeprefix(_LAUNCH_FOLDER), at)
 
@@ -325,10 +331,8 @@ def _misspelt_launch_file(package: str, file: str, at: Location) -> Mismatches:
             stems.append(known_file.removesuffix(f".{ending}"))
     stem = near(file.removesuffix(f".{ending}"), stems)
     if stem is not None:
-        meant = f"{stem}.{ending}"
-        message = f"{package} is not known to have a launch file {file!r}; did you mean {meant!r}?"
-        either = corrections(file, at, meant)
-        yield warning(_LAUNCH_FILE_NAME, message, at)._replace(corrections=either)
+        message = f"{package} is not known to have a launch file {file!r}"
+        yield warning(_LAUNCH_FILE_NAME, message, at).meaning(file, f"{stem}.{ending}")
 
 
 FILE_INSTALLED = Rule(
@@ -359,14 +363,16 @@ def _not_there(
     owner: Package, target: str, at: Location, *, is_output: bool, is_absent: bool
 ) -> Mismatch:
     """Return where else a build installs a file, or what the package has instead of it."""
-    setup, name = owner.installation, posixpath.basename(target)
-    assert setup is not None
+    setup = owner.installation
+    name = basename(target)
+    assert setup
     start = Location(setup.source.path, 1, 1)
-    source, missing = look_up(owner, target), f"a build installs no {target}"
+    source = look_up(owner, target)
+    missing = f"a build installs no {target}"
     if source.state == "elsewhere":
         message = f"{missing}: it installs the file as {source.path}"
         either = _folder_corrections(target, source.path, at, start)
-        cause = f"{posixpath.dirname(target)} is {posixpath.dirname(source.path)}"
+        cause = f"{dirname(target)} is {dirname(source.path)}"
         return Mismatch(
             FILE_INSTALLED, message, at, corrections=either, cause=cause, names=(target,)
         )
@@ -379,7 +385,7 @@ def _not_there(
             message = f"{missing}: {why}{why_no_match(owner, empty.pattern)}"
             called_at = setup.location(empty.at)
         either = _install_corrections(setup, source.path, start)
-        cause = f"{setup.entry} lacks {posixpath.dirname(source.path)}"
+        cause = f"{setup.entry} lacks {dirname(source.path)}"
         return Mismatch(
             FILE_INSTALLED,
             message,
@@ -390,22 +396,21 @@ def _not_there(
             names=(target,),
         )
     meant = similar_file(owner, name)
-    guess = f"; did you mean {meant!r}?" if meant else ""
-    message = f"{missing}: the package has no file {name!r}{guess}"
+    message = f"{missing}: the package has no file {name!r}"
     is_certain = is_absent and not is_output
-    either = corrections(name, at, meant)
-    cause = f"no file in {posixpath.dirname(target)}" if meant is None else ""
-    return Mismatch(
-        FILE_INSTALLED, message, at, None, is_certain, either, cause=cause, names=(target,)
+    cause = f"no file in {dirname(target)}" if meant is None else ""
+    wrong = Mismatch(
+        FILE_INSTALLED, message, at, is_certain=is_certain, cause=cause, names=(target,)
     )
+    return wrong.meaning(name, meant)
 
 
 def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Mismatches:
     """Yield where else a build installs what is in a folder, if anywhere."""
     setup = owner.installation
-    assert setup is not None
+    assert setup
     # CMake also makes folders that stay empty.
-    may_be_made = setup.is_cmake and posixpath.basename(inside) in setup.source.text
+    may_be_made = setup.is_cmake and basename(inside) in setup.source.text
     for target, source in owner.installed.items():
         if source.startswith(f"{inside}/"):
             message = f"{missing}: it installs {source} as {target}"
@@ -438,9 +443,9 @@ def _install_corrections(setup: Installation, file: str, start: Location) -> tup
     The corrected path has the file.
     """
     wrong = [stop.path for stop in setup.stops]
-    wrong += [posixpath.dirname(empty.pattern) for empty in setup.empty]
+    wrong += [dirname(empty.pattern) for empty in setup.empty]
     for path in wrong:
-        meant = closest(path, [file, posixpath.dirname(file)])
+        meant = closest(path, [file, dirname(file)])
         if meant is not None:
             return corrections(path.rstrip("/"), start, meant)
     return ()
@@ -454,6 +459,19 @@ _MAP_IMAGE = Rule(
     why=(
         "map_server fails to load the map when it is configured. The lifecycle manager then "
         "aborts the start of Nav2, and RViz shows no map."
+    ),
+    symptoms=(
+        Symptom(
+            "map-image",
+            pattern=r"Failed to load image file (?:\S{0,400}/)?(?P<file>[^\s/]{1,200}+) for reason",
+            source="ros-navigation/navigation2 a3a97043e, nav2_map_server/src/map_io.cpp:378",
+            sentence="The image of the map is not where its YAML file says.",
+            example=(
+                "Failed to load image file /home/ann/ws/install/cell/share/cell/maps/hall.pgm "
+                "for reason: Unable to open file"
+            ),
+            within=("file",),
+        ),
     ),
     wrong="""
 image: rom.pgm
@@ -473,21 +491,20 @@ resolution: 0.05
 def _map_images(workspace: Workspace) -> Facts:
     """Yield the images of maps that are not there."""
     files = workspace.tree.files
-    for path, tree in workspace.installed.trees:
+    for tree in workspace.installed.trees:
+        path = tree.source.path
         image = tree.get("image")
         if image is None or not image.text or tree.get("resolution") is None:
             continue
-        wanted = posixpath.normpath(posixpath.join(posixpath.dirname(path), image.text))
+        wanted = normpath(join(dirname(path), image.text))
         if image.text.startswith("/") or wanted in files:
             continue
         workspace.charge(len(files) + cost_of_guess(len(files)))
-        folder, name = posixpath.split(wanted)
-        beside = [file for file in files if posixpath.dirname(file) == folder and file != path]
-        meant = closest(name, map(posixpath.basename, beside))
-        guess = f"; did you mean {meant!r}?" if meant else ""
-        message = f"the image of the map, {image.text!r}, does not exist{guess}"
-        either = corrections(name, image.location, meant)
-        yield Mismatch(_MAP_IMAGE, message, image.location, corrections=either)
+        folder, name = split(wanted)
+        beside = [file for file in files if dirname(file) == folder and file != path]
+        meant = closest(name, map(basename, beside))
+        message = f"the image of the map, {image.text!r}, does not exist"
+        yield Mismatch(_MAP_IMAGE, message, image.location).meaning(name, meant)
 
 
 _WORLD_MODEL = Rule(
@@ -498,6 +515,22 @@ _WORLD_MODEL = Rule(
     why=(
         "Gazebo prints that it is unable to find the URI of the include, and the model is "
         "missing in the simulation."
+    ),
+    symptoms=(
+        Symptom(
+            "model-not-found",
+            pattern=(
+                r"Unable to find (?:uri|file with URI) ?\[(?:model|package)://"
+                r"(?P<model>[\w.-]{1,200}+)"
+            ),
+            source="gazebosim/sdformat 2ace536, src/parser.cc:1553",
+            sentence=(
+                "Gazebo finds no such model: look at its name, at what a build installs, and at "
+                "GZ_SIM_RESOURCE_PATH."
+            ),
+            example="Unable to find uri[model://crates]",
+            within=("model",),
+        ),
     ),
     wrong="<include><uri>model://crates</uri></include>",
     right="<include><uri>model://crate</uri></include>",
@@ -514,16 +547,15 @@ def _models(workspace: Workspace) -> Facts:
     for package in workspace.packages:
         for path in package.tree.files:
             if path.endswith(("/model.sdf", "/model.config")):
-                models.add(posixpath.basename(posixpath.dirname(path)))
+                models.add(basename(dirname(path)))
     for file in workspace.texts.sdf_files:
         for element in file.root.iter("uri"):
-            text = (element.text or "").strip()
-            name = text.removeprefix("model://").partition("/")[0]
+            text = first_text(element)
+            name = first_part(text.removeprefix("model://"))
             if not text.startswith("model://") or name in models:
                 continue
-            workspace.charge(cost_of_guess(len(models)))
+            charge_guess(workspace, models)
             meant = near(name, models)
             if meant is not None:
                 at = file.location(element)
-                message = f"there is no model {name!r}; did you mean {meant!r}?"
-                yield Mismatch(_WORLD_MODEL, message, at, corrections=corrections(name, at, meant))
+                yield Mismatch(_WORLD_MODEL, f"there is no model {name!r}", at).meaning(name, meant)

@@ -3,16 +3,15 @@
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from math import cos, pi, sin
-from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.base.transforms import Vector
 from grader.ros.config.yaml_nodes import YamlNode, yaml_value
-from grader.ros.config.yaml_values import sections_in
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Collision, Mesh, Visual
+from grader.ros.urdf.model import Mesh
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.urdf.shapes import PlacedShape
 from grader.workspace.model.known_robots import KnownRobot
@@ -32,11 +31,13 @@ from grader.workspace.rules.rule_table import (
 _DIRECTIONS = 36  # horizontal directions in which the robot is measured
 _TOLERANCE, _ROUNDING = 0.05, 0.005  # of a length; metres
 _MAX_LINKS, _OF_LINK = 300, 20  # of a robot that is compared; parts of each
-_BASE, _RADIUS, _FOOTPRINT = "robot_base_frame", "robot_radius", "footprint"
+_BASE = "robot_base_frame"
+_RADIUS = "robot_radius"
+_FOOTPRINT = "footprint"
 _PLACING = ("origin", "axis", "cylinder", "sphere", "box")
 
 
-class _Reach(NamedTuple):
+class _Reach(Named):
     """How far a link reaches from the base in a horizontal direction, in metres."""
 
     link: str
@@ -44,7 +45,7 @@ class _Reach(NamedTuple):
     direction: Vector
 
 
-class _Room(NamedTuple):
+class _Room(Named):
     """The area that a costmap takes the robot for: the corners of a polygon, or a radius."""
 
     said: str  # the parameter
@@ -64,7 +65,7 @@ def footprint_facts(workspace: Workspace) -> Facts:
 
     Where there are several robots, it may be the footprint of one that it has room for.
     """
-    rooms = [*_rooms(workspace)]
+    rooms = list(_rooms(workspace))
     robots = workspace.robots.known
     if not rooms or not robots or workspace.robots.may_be_others or may_vary(workspace, *_PLACING):
         return
@@ -75,7 +76,7 @@ def footprint_facts(workspace: Workspace) -> Facts:
         workspace.charge(_OF_LINK * sum(links))
         yield Compared("values")
         beyond = [_beyond(room, robot) for robot in robots]
-        if beyond[0] is not None and None not in beyond:
+        if beyond[0] and None not in beyond:
             yield _too_small(room, robots[0], beyond[0])
 
 
@@ -104,36 +105,37 @@ def _too_small(room: _Room, robot: KnownRobot, beyond: _Reach) -> Mismatch:
         f"the link {quoted(beyond.link)} of the robot reaches {beyond.distance:.3g} m"
     )
     location = robot.robot.link(beyond.link).location
-    at = location.resolve() if location is not None else None
+    at = location.resolve() if location else None
     return warning(_FOOTPRINT_SIZE, message, room.location, at)
 
 
 def _rooms(workspace: Workspace) -> Iterator[_Room]:
     """Yield the radii and footprints of the costmaps in parameter files."""
-    for _, tree in workspace.installed.trees:
-        for keys, section in sections_in(tree):
-            room = _room_in(keys[-1] if keys else "", section)
-            if room is not None:
-                yield room
+    for keys, section in workspace.installed.sections:
+        room = _room_in(keys[-1] if keys else "", section)
+        if room:
+            yield room
 
 
 def _room_in(name: str, section: YamlNode) -> _Room | None:
     """Return the area of a costmap; of a radius and a footprint, the latter counts."""
-    base, footprint, radius = section.get(_BASE), section.get(_FOOTPRINT), section.get(_RADIUS)
-    if base is None or not base.text:
+    base = section.get(_BASE)
+    footprint = section.get(_FOOTPRINT)
+    radius = section.get(_RADIUS)
+    if not base or not base.text:
         return None
     corners = _corners(footprint)
-    if footprint is not None and corners:
+    if footprint and corners:
         return _Room(f"{name}.{_FOOTPRINT}", base.text, corners, 0.0, footprint.location)
-    value = finite_number(radius.text) if radius is not None else None
-    if radius is None or value is None or value <= 0.0:
+    value = finite_number(radius.text) if radius else None
+    if not radius or value is None or value <= 0.0:
         return None
     return _Room(f"{name}.{_RADIUS}", base.text, [(0.0, 0.0)], value, radius.location)
 
 
 def _corners(node: YamlNode | None) -> list[tuple[float, float]]:
     """Return the corners of a footprint, which is a text with a list of points."""
-    if node is None or not node.text:
+    if not node or not node.text:
         return []
     try:
         points = yaml_value(node.text)
@@ -146,7 +148,7 @@ def _corners(node: YamlNode | None) -> list[tuple[float, float]]:
 def _beyond(room: _Room, known: KnownRobot) -> _Reach | None:
     """Return the link of a robot that reaches farthest beyond an area, or None."""
     robot = Configuration(known.robot)
-    worst: _Reach | None = None
+    worst = None
     worst_excess = 0.0
     with suppress(MissingElement, NotDecided):
         robot.link(room.base)
@@ -157,7 +159,8 @@ def _beyond(room: _Room, known: KnownRobot) -> _Reach | None:
                 distance = shape.extent(direction)[1]
                 excess = distance - room.reach(direction)
                 if excess > worst_excess and excess > _TOLERANCE * distance + _ROUNDING:
-                    worst, worst_excess = _Reach(link, distance, direction), excess
+                    worst = _Reach(link, distance, direction)
+                    worst_excess = excess
     return worst
 
 
@@ -172,7 +175,7 @@ def _shapes_of_base(robot: Configuration, base: str) -> Iterator[tuple[str, Plac
             if any(joint.type not in ("fixed", "continuous") for joint in joints):
                 continue
             T_base_link = robot.pose(link.name, relative_to=base)
-            elements: Sequence[Collision | Visual] = link.collisions or link.visuals
+            elements = link.collisions or link.visuals
             for element in elements:
                 if not isinstance(element.geometry, Mesh):
                     pose = element.origin.placed_in(T_base_link)

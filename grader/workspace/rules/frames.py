@@ -1,12 +1,12 @@
 """Frames and joints of the robot and of static transforms, and where files name them."""
 
-import re
 from collections.abc import Collection, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from itertools import pairwise, product
-from typing import NamedTuple
 
-from grader.base.names import near
+from grader.base.names import last_part, near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import LazyLocation, Location
 from grader.ros.config.yaml_values import YamlValue, is_parameters, values_in
 from grader.ros.known.gazebo_rows import gazebo
@@ -17,6 +17,7 @@ from grader.ros.nodes.node_facts import NodeFacts, NodeFrame, NodeProgram, Packa
 from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
+from grader.ros.xml.elements import first_text
 from grader.ros.xml.parsing import Element
 from grader.workspace.graph.code_ends import list_frames
 from grader.workspace.graph.compared_robots import (
@@ -24,7 +25,7 @@ from grader.workspace.graph.compared_robots import (
     robots_for_file,
     robots_for_launch,
 )
-from grader.workspace.graph.gazebo_topics import name_system, roots
+from grader.workspace.graph.gazebo_topics import elements_in, list_systems, name_system
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.under_arguments import names_under_arguments
 from grader.workspace.model.workspace import Workspace
@@ -37,26 +38,24 @@ from grader.workspace.rules.names import (
     Pattern,
     Use,
     among,
-    corrections,
     cost_of_guess,
 )
 from grader.workspace.rules.rule_table import (
     NO_FRAME,
     Rule,
 )
+from grader.workspace.rules.shared_symptoms import TREES_NOT_CONNECTED, TWO_PUBLISHERS
 
 _MIN_OF_ROBOT = 2  # joints that a file names, from which on it is for another robot
-_JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
-_FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
+_JOINTS = on_use(r"(^|_)joints?$|(wheels?|joints?)_names?$")
+_FRAMES = on_use(r"(^|_)(frame|frame_id)$")
 _BROADCASTING = ("TransformBroadcaster", "TFMessage")
 _TRANSFORMS = "tf2_msgs.msg.TFMessage"
 _POSES = "PosePublisher"  # a system of Gazebo that publishes the frames of a model
 _SENSOR_FRAMES = ("gz_frame_id", "ignition_frame_id")
 _FRAME_FIELDS = ("frame_id", "child_frame_id")  # of messages
 # What a program calls the frames that it makes itself.
-_OWN_FRAMES = re.compile(
-    r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$"
-)
+_OWN_FRAMES = on_use(r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$")
 
 
 def frame_facts(workspace: Workspace) -> Facts:
@@ -78,10 +77,11 @@ def frame_facts(workspace: Workspace) -> Facts:
     yield from _second_parents(workspace, robots)
     yield from _frames_in_code(workspace, robots)
     controllers = workspace.installed.typed_sections
-    for path, tree in workspace.installed.trees:
+    for tree in workspace.installed.trees:
         if is_parameters(tree):
+            path = tree.source.path
             compared = robots_for_file(workspace, path)
-            values = [*values_in(tree)]
+            values = list(values_in(tree))
             joints = compared
             if _is_of_absent_robot(workspace, path, values):
                 joints = ComparedRobots()
@@ -98,7 +98,8 @@ def frame_facts(workspace: Workspace) -> Facts:
 
 def _defined_in(known_robot: KnownRobot) -> Iterator[Definition]:
     """Yield the frames, links and joints of a robot."""
-    robot, path = known_robot.robot, known_robot.path
+    robot = known_robot.robot
+    path = known_robot.path
     for link in robot.links:
         yield Definition("frame", link.name, _place(link.location), robot=path)
         yield Definition("link", link.name, _place(link.location), robot=path)
@@ -107,7 +108,7 @@ def _defined_in(known_robot: KnownRobot) -> Iterator[Definition]:
 
 
 def _place(location: LazyLocation | None) -> Location:
-    if location is not None:
+    if location:
         return location.resolve()
     return Location("", 1, 1)
 
@@ -123,10 +124,10 @@ def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
         yield Pattern("joint", name)
     for name in names_under_arguments(workspace, "link"):
         yield from (Pattern("link", name), Pattern("frame", name))
-    for _, _, launch in workspace.launches.files:
+    for launch in workspace.launches.every:
         if launch.more:
             yield Open("frame", reason=launch.more)
-        if any("bag" in command for command in launch.commands):
+        if any("bag play" in command for command in launch.command_texts):
             yield Open("frame")  # a recording has frames of its own
     if _may_be_published(workspace):
         yield Open("frame")
@@ -141,8 +142,8 @@ def _named_in_code(named: Sequence["_NamedFrame"], above: Collection[str]) -> Fa
 
 def _may_be_published(workspace: Workspace) -> bool:
     """Return whether a program, code or a system of Gazebo may publish unknown frames."""
-    packages = {package.name for package in workspace.packages}
-    for _, node in workspace.launches.nodes:
+    packages = workspace.own_packages
+    for node in workspace.launches.nodes:
         if "frames" not in package_row(node.package).without and node.package not in packages:
             return True
     if any(_may_publish(workspace, package) for package in workspace.packages):
@@ -150,15 +151,7 @@ def _may_be_published(workspace: Workspace) -> bool:
     for text in workspace.texts.python_texts:
         if any(word in text for word in _BROADCASTING):
             return True
-    return _POSES in _systems_of_gazebo(workspace)
-
-
-def _systems_of_gazebo(workspace: Workspace) -> set[str]:
-    """Return the systems that robots, models and worlds load."""
-    systems: set[str] = set()
-    for root, _ in roots(workspace):
-        systems |= {name_system(plugin) for plugin in root.iter("plugin")}
-    return systems
+    return _POSES in list_systems(workspace)
 
 
 def _may_publish(workspace: Workspace, package: Package) -> bool:
@@ -167,13 +160,13 @@ def _may_publish(workspace: Workspace, package: Package) -> bool:
     The frames of programs that are started are known.
     """
     setup = package.installation
-    if not package.is_cmake or setup is None or not setup.programs:
+    if not package.is_cmake or not setup or not setup.programs:
         return False
     nodes = workspace.code.by_package[package.name]
-    programs = {path.rpartition("/")[2] for path in setup.programs}
+    programs = {last_part(path) for path in setup.programs}
     if not _are_read(nodes, programs) or any(map(_may_open_transforms, nodes.nodes)):
         return True
-    started = {(node.package, node.executable) for _, node in workspace.launches.nodes}
+    started = workspace.launches.programs
     others = [each for each in nodes.programs if (package.name, each.name) not in started]
     return any(map(_publishes_frame, others))
 
@@ -200,7 +193,7 @@ def _may_open_transforms(facts: NodeFacts) -> bool:
 
 def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Facts:
     """Yield the frames that own nodes publish, look up and name in messages."""
-    named: list[_NamedFrame] = []
+    named = []
     above = set()  # the frames that static transforms have as their parent: the root of a map
     for number, node in workspace.launches.launched:
         if _is_static(node):
@@ -233,7 +226,7 @@ def _definition_or_use(named: "_NamedFrame") -> Definition | Use:
 
 def _prefixed_frames(workspace: Workspace) -> Iterator[Definition | Open]:
     """Yield the links of robots under the prefix that robot_state_publisher gives them."""
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         if node.frame_prefix is None:
             yield Open("frame")
         for robot in workspace.robots.known if node.frame_prefix else ():
@@ -244,7 +237,7 @@ def _prefixed_frames(workspace: Workspace) -> Iterator[Definition | Open]:
 
 def _frames_of_others(workspace: Workspace) -> Iterator[Definition | Open]:
     """Yield the frames that nodes of other packages publish under names from launch files."""
-    for package, node in workspace.launches.nodes:
+    for package, node in workspace.launches.placed_nodes:
         if not package_row(node.package).publishes_transforms:
             continue
         given = workspace.parameters.given_to(package, node)
@@ -257,7 +250,7 @@ def _frames_of_others(workspace: Workspace) -> Iterator[Definition | Open]:
 
 def _frames_in_fields(workspace: Workspace) -> Iterator[Use]:
     """Yield the frames that Python code of started packages writes into messages."""
-    started = {node.package for _, node in workspace.launches.nodes if node.when is not False}
+    started = {node.package for node in workspace.launches.nodes if node.when is not False}
     for package in workspace.packages:
         if package.name not in started:
             continue
@@ -269,7 +262,7 @@ def _frames_in_fields(workspace: Workspace) -> Iterator[Use]:
                 yield Use("frame", text.removeprefix("/"), field.location, field.path[-1])
 
 
-class _NamedFrame(NamedTuple):
+class _NamedFrame(Named):
     """A frame that a node names as it is started."""
 
     name: str
@@ -327,17 +320,14 @@ def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> Mi
         if meant is None:
             continue
         at = each.frame.location
-        message = (
-            f"the frame {each.name!r} is published, which nothing else has; did you mean "
-            f"{meant!r} ({roots[meant].file_and_line})?"
-        )
-        either = corrections(each.name, at, meant, roots[meant])
+        message = f"the frame {each.name!r} is published, which nothing else has"
         is_certain = each.node.when is True and len(robots) == 1
-        yield Mismatch(_ROOT_FRAME, message, at, roots[meant], is_certain, corrections=either)
+        wrong = Mismatch(_ROOT_FRAME, message, at, roots[meant], is_certain)
+        yield wrong.meaning(each.name, meant, roots[meant])
 
 
 def _is_static(node: StartedNode) -> bool:
-    return (node.package, node.executable) == STATIC_PUBLISHER
+    return node.program == STATIC_PUBLISHER
 
 
 def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Facts:
@@ -378,6 +368,10 @@ _FRAME_PARENT = Rule(
         "tf2 keeps one parent of each frame, that of the last message. The link jumps between "
         "two places, or is no longer connected to the robot."
     ),
+    symptoms=(
+        TREES_NOT_CONNECTED,
+        TWO_PUBLISHERS,
+    ),
     wrong="""
 Node(
     package='tf2_ros',
@@ -404,7 +398,7 @@ def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Mismatches
     It is certain for a node that is started, with one robot.
     """
     joints = {joint.child: joint for robot in robots for joint in robot.joints}
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         frames = _frames_of_static(node) if _is_static(node) else None
         if frames is None or frames[1] not in joints:
             continue
@@ -426,10 +420,10 @@ def _is_of_absent_robot(workspace: Workspace, path: str, values: Sequence[YamlVa
     It names joints, and no robot of the workspace has one of them, or one that is nearly called so.
     """
     given = workspace.parameters.files.keys() | workspace.parameters.controller_files
-    joints: set[str] = set()
+    joints = set()
     for known_robot in workspace.robots.known:
         joints |= {joint.name for joint in known_robot.robot.joints}
-    named: set[str] = set()
+    named = set()
     for value in values:
         if value.keys and _JOINTS.search(value.keys[-1]):
             named |= {text for text, _ in value.texts() if text and "/" not in text}
@@ -458,7 +452,7 @@ def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Facts:
 def _frame_in_yaml(name: str, at: Location, value: YamlValue) -> Iterator[Definition | Use]:
     """Yield a frame that a parameter names, or that its program makes."""
     key = value.keys[-1]
-    if name and _OWN_FRAMES.search(key) is None:
+    if name and not _OWN_FRAMES.search(key):
         yield Use("frame", name, at, value.said)
     elif name and key in frame_parameters():
         yield Definition("frame", name, at)
@@ -467,7 +461,7 @@ def _frame_in_yaml(name: str, at: Location, value: YamlValue) -> Iterator[Defini
 def _in_robot(robot: KnownRobot) -> Facts:
     """Yield what the elements for Gazebo and ros2_control name."""
     joints = {joint.name for joint in robot.robot.joints}
-    named = (*gazebo().frame_elements, *gazebo().joint_elements)
+    named = gazebo().frame_elements + gazebo().joint_elements
     for element in robot.root.iterchildren("gazebo"):
         at = robot.place(element)
         for joint in element.iter("joint"):  # of Gazebo alone, for what URDF does not have
@@ -483,7 +477,9 @@ def _in_robot(robot: KnownRobot) -> Facts:
 
 def _in_element(robot: KnownRobot, element: Element) -> Facts:
     """Yield the joint or frame that an element for Gazebo names, or makes."""
-    text, at, said = (element.text or "").strip(), robot.place(element), f"<{element.tag}>"
+    text = first_text(element)
+    at = robot.place(element)
+    said = f"<{element.tag}>"
     parent = element.getparent()
     is_made = element.tag == "frame_id" and parent is not None and parent.tag == "plugin"
     if text and element.tag in gazebo().joint_elements:
@@ -500,25 +496,24 @@ def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Facts:
     They are those that the systems name, and by default those below the model's.
     """
     created = _created_models(workspace)
-    defaults = [*gazebo().odometry_frames]
+    defaults = list(gazebo().odometry_frames)
     for robot in robots:
         defaults += [link.name for link in robot.links]
-    for root, place in roots(workspace):
-        for plugin in root.iter("plugin"):
-            if name_system(plugin) not in gazebo().odometry_systems:
-                continue
-            at = place(plugin)
-            for element in plugin.iterchildren(*gazebo().odometry_elements):
-                yield Definition("frame", (element.text or "").strip(), at)
-            around = {model.get("name", "") for model in plugin.iterancestors("robot", "model")}
-            for model, frame in product(sorted(around | created), defaults):
-                yield Definition("frame", f"{model}/{frame}", at)
+    for plugin, place in elements_in(workspace, "plugin"):
+        if name_system(plugin) not in gazebo().odometry_systems:
+            continue
+        at = place(plugin)
+        for element in plugin.iterchildren(*gazebo().odometry_elements):
+            yield Definition("frame", first_text(element), at)
+        around = {model.get("name", "") for model in plugin.iterancestors("robot", "model")}
+        for model, frame in product(sorted(around | created), defaults):
+            yield Definition("frame", f"{model}/{frame}", at)
 
 
 def _created_models(workspace: Workspace) -> set[str]:
     """Return the names of the models that launch files create in the simulation."""
     created = set()
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         if node.executable == "create":
             for option, name in pairwise(node.arguments or ()):
                 if option == "-name" and name:
@@ -536,7 +531,7 @@ def _sensor_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Us
         for model in file.root.iter("model"):
             made = {element.get("name") for element in model.iter("link", "frame")}
             for element in model.iter(*_SENSOR_FRAMES) if made & links else ():
-                name = (element.text or "").strip().removeprefix("/")
+                name = first_text(element).removeprefix("/")
                 if name and name not in made:
                     at = file.location(element)
                     yield Use("frame", name, at, f"<{element.tag}>", optional=True)
@@ -547,6 +542,6 @@ def _in_system(robot: KnownRobot, system: Element) -> Facts:
     for element in system.iterchildren("joint"):
         yield Use("joint", element.get("name", ""), robot.place(element), "<ros2_control>")
         for param in element.iterchildren("param"):
-            text = (param.text or "").strip()
+            text = first_text(param)
             if param.get("name") == "mimic" and text:
                 yield Use("joint", text, robot.place(param), "the parameter mimic")

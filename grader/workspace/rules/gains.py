@@ -1,10 +1,9 @@
 """Gains of controllers: one that computes commands with gains moves nothing if none is given."""
 
-from typing import NamedTuple
-
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import quoted
-from grader.ros.known.package_rows import GainsRow, controller_row
+from grader.ros.known.package_rows import GainsRow
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.python.values import Unknown
 from grader.workspace.graph.started_controllers import defined_controllers
@@ -12,7 +11,6 @@ from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
     Facts,
-    Mismatch,
     warning,
 )
 from grader.workspace.rules.rule_table import (
@@ -21,7 +19,7 @@ from grader.workspace.rules.rule_table import (
 )
 
 
-class _LackingGains(NamedTuple):
+class _LackingGains(Named):
     """A joint without gains, the interface of its commands, and where this is asked for."""
 
     joint: str
@@ -32,15 +30,20 @@ class _LackingGains(NamedTuple):
 def gain_facts(workspace: Workspace) -> Facts:
     """Yield the controllers that are given no gains for a joint, and need them."""
     for controller in defined_controllers(workspace):
-        gains = controller_row(controller.type.text).gains
+        gains = controller.row.gains
         gifts = workspace.parameters.owners.get(controller.name, [])
-        if gains is None or not gifts or any(given.unknown for given in gifts):
+        if not gains or not gifts or any(given.unknown for given in gifts):
             continue
         workspace.charge(len(gifts))
         yield Compared("effects")
-        lacks = [lack for given in gifts if (lack := _find_lack(gains, given)) is not None]
+        lacks = [lack for given in gifts if (lack := _find_lack(gains, given))]
         if len(lacks) == len(gifts):
-            yield _moves_nothing(controller.name, lacks[0])
+            first = lacks[0]
+            message = (
+                f"{controller.name} commands the {first.interface} of {quoted(first.joint)} "
+                f"without gains, so it moves nothing: give it gains.{first.joint}.p"
+            )
+            yield warning(_GAIN_SET, message, first.location)
 
 
 def _find_lack(row: GainsRow, given: NodeParameters) -> _LackingGains | None:
@@ -53,7 +56,7 @@ def _find_lack(row: GainsRow, given: NodeParameters) -> _LackingGains | None:
         return None
     for joint in _texts(given, row.joints):
         gains = [given.values.get(f"gains.{joint}.{name}") for name in row.names]
-        if all(gain is None or gain.value in (0, 0.0) for gain in gains):
+        if all(not gain or gain.value in (0, 0.0) for gain in gains):
             return _LackingGains(joint, interface, given.values[row.interfaces].location)
     return None
 
@@ -61,7 +64,7 @@ def _find_lack(row: GainsRow, given: NodeParameters) -> _LackingGains | None:
 def _texts(given: NodeParameters, name: str) -> list[str]:
     """Return the texts in a list; none where it is not known."""
     parameter = given.values.get(name)
-    value = parameter.value if parameter is not None else None
+    value = parameter.value if parameter else None
     if isinstance(value, Unknown) or not isinstance(value, list):
         return []
     return [text for text in value if isinstance(text, str)]
@@ -91,11 +94,3 @@ gains: {arm_joint: {p: 20.0, d: 1.0}}
         "spawn/rover.launch.py": "",
     },
 )
-
-
-def _moves_nothing(controller: str, lack: _LackingGains) -> Mismatch:
-    message = (
-        f"{controller} commands the {lack.interface} of {quoted(lack.joint)} without gains, so it "
-        f"moves nothing: give it gains.{lack.joint}.p"
-    )
-    return warning(_GAIN_SET, message, lack.location)

@@ -3,26 +3,25 @@
 The sensors and systems are those in the robot and in worlds.
 """
 
-import re
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
-from grader.base.names import closest
+from grader.base.names import closest, last_part
+from grader.base.patterns import on_use
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.known.gazebo_rows import NO_SENSOR, gazebo
 from grader.ros.known.package_tables import create_table
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.xml.parsing import Element, XmlFile
-from grader.workspace.graph.bridge_rows import BRIDGE
-from grader.workspace.graph.gazebo_topics import name_system, roots
+from grader.workspace.graph.bridge_rows import PARAMETER_BRIDGE
+from grader.workspace.graph.gazebo_topics import list_systems, roots
 from grader.workspace.graph.started_worlds import started_worlds
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Facts,
     Mismatch,
     Mismatches,
-    corrections,
     warning,
 )
 from grader.workspace.rules.rule_table import (
@@ -31,26 +30,29 @@ from grader.workspace.rules.rule_table import (
     NO_TOPIC,
     NO_WORD,
     Rule,
+    Symptom,
 )
+from grader.workspace.rules.shared_symptoms import WORLD_AWAITED
 
 _SIMULATION = "ros_gz_sim"
-_OPTION = re.compile(r"--?[A-Za-z]")
+_CLASSIC_CREATOR = "spawn_entity.py"  # of gazebo_ros, with the same option
+_OPTION = on_use(r"--?[A-Za-z]")
 _WITHOUT_VALUE = "allow_renaming"  # an option of create
 
 
 def gazebo_facts(workspace: Workspace) -> Facts:
     """Yield systems that worlds lack, and what is spawned, or bridged, from what is not there."""
-    worlds: dict[str, XmlFile] = {}  # those that launch files name
+    worlds = {}  # those that launch files name
     for file in workspace.texts.sdf_files:
-        name = file.source.path.rpartition("/")[2]
+        name = last_part(file.source.path)
         if any(name in text for text in workspace.texts.searched_launch_texts()):
             for world in file.root.iterchildren("world"):
                 worlds[world.get("name", "")] = file
                 yield from _missing_systems(workspace, file, world)
-    yield from _refused_sensors(workspace)
-    for _, node in workspace.launches.nodes:
-        if _is_creator(node):
+    for node in workspace.launches.nodes:
+        if _is_creator(node) or node.executable == _CLASSIC_CREATOR:
             yield from _created_from_topic(workspace, node)
+        if _is_creator(node):
             yield from _created_in_world(node, worlds)
             yield from _unknown_options(node)
             yield from _created_from_nothing(node)
@@ -67,6 +69,7 @@ _SIMULATION_STARTED = Rule(
         "'create' waits for a service of Gazebo that nothing offers. No robot appears, and "
         "nodes that need /clock wait too."
     ),
+    symptoms=(WORLD_AWAITED,),
     wrong="""
 DeclareLaunchArgument('world', default_value=os.path.join(share, 'worlds', 'world.sdf')),
 Node(package='ros_gz_sim', executable='create', arguments=['-string', robot]),
@@ -91,7 +94,7 @@ def _created_without_gazebo(workspace: Workspace) -> Mismatches:
 
     Nothing is said where launch files name no world of the workspace: another command may start it.
     """
-    creators = [node for _, node in workspace.launches.nodes if _is_creator(node) and node.when]
+    creators = [node for node in workspace.launches.nodes if _is_creator(node) and node.when]
     if creators and not started_worlds(workspace).may_start:
         message = "no launch file starts Gazebo, for which create waits"
         yield warning(_SIMULATION_STARTED, message, creators[0].location)
@@ -100,34 +103,6 @@ def _created_without_gazebo(workspace: Workspace) -> Mismatches:
 def _is_creator(node: StartedNode) -> bool:
     """Return whether a node creates a robot in the simulation."""
     return node.package == _SIMULATION and node.executable == "create"
-
-
-_SENSOR_NAME = Rule(
-    "sensor-name",
-    "topics",
-    NO_TOPIC,
-    "A sensor of Gazebo has a name, which no other one of its link has.",
-    why="libsdformat refuses the description, so that Gazebo creates nothing of the robot.",
-    wrong='<gazebo reference="base_link"><sensor type="imu"><topic>imu</topic></sensor></gazebo>',
-    right="""
-<gazebo reference="base_link"><sensor name="imu" type="imu"><topic>imu</topic></sensor></gazebo>
-""",
-    frame="rover.urdf",
-)
-
-
-def _refused_sensors(workspace: Workspace) -> Mismatches:
-    """Yield sensors without a name, or with the name of another one of their link."""
-    for robot in workspace.robots.known:
-        seen = set[tuple[str, str]]()
-        for sensor in robot.root.iterfind("gazebo/sensor"):
-            above = sensor.getparent()
-            name, link = sensor.get("name", ""), "" if above is None else above.get("reference", "")
-            if not name or (link, name) in seen:
-                has = f"the name {quoted(name)} of another one" if name else "no name"
-                message = f"a sensor has {has}, so Gazebo refuses the robot"
-                yield Mismatch(_SENSOR_NAME, message, robot.place(sensor))
-            seen.add((link, name))
 
 
 _SENSOR_SYSTEM = Rule(
@@ -169,9 +144,7 @@ def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Mis
     """
     if next(world.iterchildren("plugin"), None) is None or not workspace.robots.known:
         return
-    systems = set()
-    for root, _ in roots(workspace):
-        systems |= {name_system(plugin) for plugin in root.iter("plugin")}
+    systems = list_systems(workspace)
     for sensor, at in _sensors_in_world(workspace, file):
         system = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR).system
         if system and system not in systems:
@@ -186,7 +159,7 @@ def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Mis
 def _sensors_in_world(workspace: Workspace, file: XmlFile) -> Iterator[tuple[Element, Location]]:
     """Yield the sensors of a file of a world, and of the only robot, if it is created."""
     seen = [file.root]
-    is_created = any(_is_creator(node) for _, node in workspace.launches.nodes)
+    is_created = any(_is_creator(node) for node in workspace.launches.nodes)
     if is_created and len(workspace.robots.known) == 1:
         seen.append(workspace.robots.known[0].root)
     for root, place in roots(workspace):
@@ -197,7 +170,7 @@ def _sensors_in_world(workspace: Workspace, file: XmlFile) -> Iterator[tuple[Ele
 
 def _values_of_options(node: StartedNode) -> Mapping[str, str]:
     """Return the words after the options of a program, where both are known."""
-    options: dict[str, str] = {}
+    options = {}
     for key, value in pairwise(node.arguments or ()):
         if key is not None and value is not None:
             options[key.lstrip("-")] = value
@@ -213,6 +186,7 @@ _CREATED_WORLD = Rule(
         "'create' calls a service of the named world, which Gazebo does not offer. It waits or "
         "fails, and no robot appears in the simulation."
     ),
+    symptoms=(WORLD_AWAITED,),
     wrong="""
 IncludeLaunchDescription(
     os.path.join(gazebo, 'launch', 'gz_sim.launch.py'),
@@ -247,8 +221,7 @@ def _created_in_world(node: StartedNode, worlds: Mapping[str, XmlFile]) -> Misma
         f"{file.source.path} is {quoted(world)}"
     )
     at = file.location(next(file.root.iterchildren("world")))
-    either = corrections(wanted, node.location, world)
-    yield Mismatch(_CREATED_WORLD, message, node.location, at, corrections=either)
+    yield Mismatch(_CREATED_WORLD, message, node.location, at).correcting(wanted, world)
 
 
 def _options_given(node: StartedNode) -> list[str] | None:
@@ -259,7 +232,7 @@ def _options_given(node: StartedNode) -> list[str] | None:
     words = node.arguments
     if words is None or None in words:
         return None
-    given: list[str] = []
+    given = []
     is_value = False
     for word in words:
         if word is None or word == "--ros-args":
@@ -302,7 +275,8 @@ def _unknown_options(node: StartedNode) -> Mismatches:
         meant = create_table().older.get(name) or similar
         guess = f"; did you mean -{meant}?" if meant else ""
         message = f"create has no option -{name}, and ignores it{guess}"
-        yield warning(_CREATE_OPTION, message, node.location)
+        wrong = warning(_CREATE_OPTION, message, node.location)
+        yield wrong.offering(f"-{name}", f"-{meant}" if meant else None)
 
 
 _CREATED_FROM = Rule(
@@ -313,6 +287,15 @@ _CREATED_FROM = Rule(
     why=(
         "The program 'create' prints an error and ends, so no robot appears in Gazebo. Spawners"
         " that wait for its controller manager then wait too."
+    ),
+    symptoms=(
+        Symptom(
+            "create-source",
+            pattern=r"Must specify either -file, -param, -string or -topic",
+            source="gazebosim/ros_gz a4d00a9, ros_gz_sim/src/create.cpp:214",
+            sentence="The program that creates a robot gets no source of it.",
+            example="Must specify either -file, -param, -string or -topic",
+        ),
     ),
     wrong="Node(package='ros_gz_sim', executable='create', arguments=['-name', 'rover']),",
     right="""
@@ -340,6 +323,22 @@ _CREATED_TOPIC = Rule(
         "'create' prints 'Waiting messages on topic' again and again, because nothing publishes"
         " the description there. No robot appears in Gazebo."
     ),
+    symptoms=(
+        Symptom(
+            "robot-awaited",
+            pattern=(
+                r"Waiting (?:messages on topic \[|for entity xml on )/?(?P<topic>[\w/]{1,200}+)"
+            ),
+            source="gazebosim/ros_gz a4d00a9, ros_gz_sim/src/create.cpp:79",
+            sentence=(
+                "The program that creates a robot gets none: nothing publishes the topic, or in "
+                "another namespace."
+            ),
+            example="Waiting messages on topic [robot_description].",
+            within=("topic",),
+            place="description",
+        ),
+    ),
     wrong="""
 Node(package='robot_state_publisher', executable='robot_state_publisher',
      parameters=[{'robot_description': robot}]),
@@ -363,7 +362,7 @@ def _created_from_topic(workspace: Workspace, node: StartedNode) -> Mismatches:
     if topic is None or name is None or workspace.launches.unknown_nodes:
         return
     published: dict[str, Location] = {}
-    for _, other in workspace.launches.nodes:
+    for other in workspace.launches.nodes:
         if other.package == "robot_state_publisher":
             description = other.topic("robot_description")
             if description is None:
@@ -372,8 +371,8 @@ def _created_from_topic(workspace: Workspace, node: StartedNode) -> Mismatches:
     if published and name not in published:
         meant, at = next(iter(published.items()))
         message = f"the robot is created from {name}, but robot_state_publisher publishes {meant}"
-        either = corrections(topic, node.location, meant.strip("/"))
-        yield Mismatch(_CREATED_TOPIC, message, node.location, at, corrections=either)
+        wrong = Mismatch(_CREATED_TOPIC, message, node.location, at)
+        yield wrong.correcting(topic, meant.strip("/"))
 
 
 _BRIDGE_TOPICS = Rule(
@@ -398,9 +397,8 @@ Node(
 
 def _bridges(workspace: Workspace) -> Mismatches:
     """Yield bridges without any topic."""
-    for package, node in workspace.launches.nodes:
-        is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
-        if is_bridge and node.arguments == ():
+    for package, node in workspace.launches.placed_nodes:
+        if node.program == PARAMETER_BRIDGE and node.arguments == ():
             given = workspace.parameters.given_to(package, node)
             if not given.unknown and "config_file" not in given.values:
                 message = (

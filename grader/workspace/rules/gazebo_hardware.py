@@ -1,7 +1,8 @@
 """The hardware of robots in Gazebo, and the plugin of ros2_control that loads it."""
 
-import re
-
+from grader.base.names import first_part
+from grader.base.patterns import on_use
+from grader.ros.xml.elements import first_text
 from grader.workspace.model.known_robots import KnownRobot
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
@@ -15,25 +16,19 @@ from grader.workspace.rules.rule_table import (
 )
 
 _PACKAGES = ("gz_ros2_control", "ign_ros2_control", "gazebo_ros2_control")
-_LIBRARY = re.compile(r"(?:lib)?(\w+?_ros2_control)(?:-system)?(?:\.so)?")
+_LIBRARY = on_use(r"(?:lib)?(\w+?_ros2_control)(?:-system)?(?:\.so)?")
 
 
 def gazebo_hardware_facts(workspace: Workspace) -> Facts:
     """Yield hardware of another package than the plugin of Gazebo that loads it."""
     for robot in workspace.robots.known:
-        loading = _loading_packages(robot)
+        loading = set()  # the packages whose plugins of Gazebo load the hardware
+        for plugin in robot.root.iter("plugin"):
+            library = _LIBRARY.fullmatch(plugin.get("filename", ""))
+            if library and library[1] in _PACKAGES:
+                loading.add(library[1])
         for system in robot.systems if loading else ():
             yield from _other_hardware(robot, system.findtext("hardware/plugin") or "", loading)
-
-
-def _loading_packages(robot: KnownRobot) -> set[str]:
-    """Return the packages whose plugins of Gazebo load the hardware of a robot."""
-    packages = set()
-    for plugin in robot.root.iter("plugin"):
-        library = _LIBRARY.fullmatch(plugin.get("filename", ""))
-        if library is not None and library[1] in _PACKAGES:
-            packages.add(library[1])
-    return packages
 
 
 _GAZEBO_HARDWARE = Rule(
@@ -69,11 +64,11 @@ _GAZEBO_HARDWARE = Rule(
 
 def _other_hardware(robot: KnownRobot, hardware: str, loading: set[str]) -> Mismatches:
     """Yield that hardware is of a package for Gazebo whose plugin is not loaded."""
-    name = hardware.strip().partition("/")[0]
+    name = first_part(hardware.strip())
     if name not in _PACKAGES or name in loading:
         return
     for element in robot.root.iterfind("ros2_control/hardware/plugin"):
-        if (element.text or "").strip() == hardware.strip():
+        if first_text(element) == hardware.strip():
             message = (
                 f"the plugin of {min(loading)} loads no hardware of {name}: both have to be of "
                 "one package"

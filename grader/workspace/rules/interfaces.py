@@ -37,12 +37,8 @@ from grader.workspace.rules.names import (
     Mismatch,
     Mismatches,
     Undecided,
-    corrections,
 )
-from grader.workspace.rules.rule_table import (
-    NO_INTERFACE,
-    Rule,
-)
+from grader.workspace.rules.rule_table import NO_INTERFACE, Rule, Symptom
 
 _GROUP = "rosidl_interface_packages"
 # What rosidl brings for services and actions without naming them.
@@ -55,14 +51,14 @@ _CHECKING = RELEASES[: RELEASES.index("jazzy")]
 # Types whose lists take bytes, too, or items of several types.
 _OPEN_ITEMS = BOOLEANS | {"byte", "char", "octet", "uint8", "int8"}
 # Releases that have the headers of all packages in one folder, where a compiler finds them.
-_OF_ONE_FOLDER: frozenset[Release] = frozenset({"foxy", "galactic"})
+_OF_ONE_FOLDER = frozenset({"foxy", "galactic"})
 
 
 def interface_facts(workspace: Workspace) -> Facts:
     """Yield what is wrong with interfaces, and types and fields that are used and do not exist."""
     for package in workspace.packages:
         interfaces = workspace.code.interfaces[package.name]
-        if interfaces.location is None and not interfaces.unlisted:
+        if not interfaces.location and not interfaces.unlisted:
             continue
         yield Compared("interfaces")
         if not interfaces.is_complete:
@@ -90,6 +86,22 @@ _INTERFACE_GROUP = Rule(
         "rosidl_generate_interfaces() stops CMake with an error. colcon builds neither the "
         "package nor those that depend on it."
     ),
+    symptoms=(
+        Symptom(
+            "interfaces-without-group",
+            pattern=(
+                r"Packages installing interfaces must include "
+                r"'<member_of_group>rosidl_interface_packages</member_of_group>'"
+            ),
+            source="ros2/rosidl 95739d5b, rosidl_cmake/cmake/rosidl_generate_interfaces.cmake:224",
+            sentence="package.xml of a package with interfaces lacks a line.",
+            example=(
+                "Packages installing interfaces must include "
+                "'<member_of_group>rosidl_interface_packages</member_of_group>' in their "
+                "package.xml"
+            ),
+        ),
+    ),
     wrong="<!-- no member_of_group -->",
     right="<member_of_group>rosidl_interface_packages</member_of_group>",
     frame="package.xml",
@@ -107,14 +119,15 @@ def _no_group(package: Package, interfaces: PackageInterfaces) -> Mismatches:
     Nothing is said of one that is not read whole, or that ROS 2 refuses.
     """
     manifest = package.manifest
-    if manifest is None or manifest.unread or manifest.refusals:
+    if not manifest or manifest.unread or manifest.refusals:
         return
     if interfaces.needs_group and _GROUP not in manifest.groups:
         message = (
             f"package.xml needs <member_of_group>{_GROUP}</member_of_group>: without it, "
             "rosidl_generate_interfaces() stops the build"
         )
-        yield Mismatch(_INTERFACE_GROUP, message, manifest.name_location, interfaces.location)
+        wrong = Mismatch(_INTERFACE_GROUP, message, manifest.name_location, interfaces.location)
+        yield wrong.offering("", f"<member_of_group>{_GROUP}</member_of_group>")
 
 
 _INTERFACE_FILE = Rule(
@@ -125,6 +138,30 @@ _INTERFACE_FILE = Rule(
     why=(
         "The build of the package stops at the file. None of its messages are generated, and "
         "packages that depend on it are not built."
+    ),
+    symptoms=(
+        Symptom(
+            "invalid-field-name",
+            pattern=r"'(?P<field>\w{1,200}+)' is an invalid field name\.",
+            source="ros2/rosidl 95739d5b, rosidl_adapter/rosidl_adapter/parser.py:372",
+            sentence="The names of fields are written in lower case with single underscores.",
+            example=(
+                "Error processing 'int8 Id' of 'cell_msgs/Part': ''Id' is an invalid field name. "
+                "It should have the pattern '^(?!.*__)(?!.*_$)[a-z][a-z0-9_]*$''"
+            ),
+            within=("field",),
+        ),
+        Symptom(
+            "invalid-message-name",
+            pattern=r"'(?P<file>\w{1,200}+)' is an invalid message name\.",
+            source="ros2/rosidl 95739d5b, rosidl_adapter/rosidl_adapter/parser.py:222",
+            sentence="The files of messages are named in CamelCase.",
+            example=(
+                "'part' is an invalid message name. It should have the pattern "
+                "'^[A-Z][A-Za-z0-9]*$'"
+            ),
+            within=("file",),
+        ),
     ),
     wrong="float Speed",
     right="float64 speed",
@@ -141,8 +178,9 @@ def _unreadable_files(interfaces: PackageInterfaces) -> Mismatches:
     for own_type in interfaces.types.values():
         for fault in own_type.interface.faults:
             message = f"rosidl cannot read the file: {fault.message}"
-            either = corrections(fault.written, fault.location, fault.meant)
-            yield Mismatch(_INTERFACE_FILE, message, fault.location, corrections=either)
+            wrong = Mismatch(_INTERFACE_FILE, message, fault.location)
+            wrong = wrong.correcting(fault.written, fault.meant)
+            yield wrong.offering(fault.written, fault.meant)
 
 
 def _types_of_fields(
@@ -156,11 +194,12 @@ def _types_of_fields(
         for section in own_type.interface.sections:
             for field in section.fields.values():
                 workspace.charge(1)
-                kind, at = field.type, field.location
-                if not kind.package or at is None:
+                kind = field.type
+                at = field.location
+                if not kind.package or not at:
                     continue
                 absent = _no_type(workspace, f"{kind.package}.msg.{kind.name}", at)
-                if absent is not None:
+                if absent:
                     yield absent
                 elif kind.package != package.name:
                     yield from _no_dependency(workspace, interfaces, field, at)
@@ -208,20 +247,21 @@ def _no_dependency(
 def _reached(workspace: Workspace, interfaces: PackageInterfaces) -> set[str] | None:
     """Return the packages whose messages an interface may use; None if not all are known."""
     exports = cmake_words().exports
-    pending, reached = [*interfaces.dependencies, *_IMPLICIT], set[str]()
+    pending = [*interfaces.dependencies, *_IMPLICIT]
+    reached = set()
     while pending:
         name = pending.pop()
         if name in reached:
             continue
         reached.add(name)
         other = workspace.code.interfaces.get(name)
-        if other is not None:
+        if other:
             pending += other.dependencies
         elif known_interfaces(name) is not None:
             pending += _packages_used(name)
         elif name not in exports:
             return None
-        pending += exports.get(name, "").split() if other is None else ()
+        pending += exports.get(name, "").split() if not other else ()
     return reached
 
 
@@ -243,7 +283,7 @@ def is_absent(workspace: Workspace, name: str) -> bool:
     if "_" in own_name:
         return False  # of a section or an event, which rosidl generates too
     interfaces = workspace.code.interfaces.get(package)
-    if interfaces is not None:
+    if interfaces:
         return interfaces.is_complete and own_name not in interfaces.types
     known = known_interfaces(package, workspace.releases)
     if known is None or own_name in known:
@@ -261,6 +301,19 @@ _INTERFACE_TYPE = Rule(
     why=(
         "A Python node ends at its start with an ImportError or ModuleNotFoundError. A C++ file"
         " does not compile, because the header does not exist."
+    ),
+    symptoms=(
+        Symptom(
+            "type-not-imported",
+            pattern=(
+                r"cannot import name '(?P<type>\w{1,200}+)' from "
+                r"'[\w.]{1,200}\.(?:msg|srv|action)'"
+            ),
+            source="python/cpython v3.11.7, Lib/traceback.py:953",
+            sentence="A package has no such message, service or action.",
+            example="ImportError: cannot import name 'Twits' from 'geometry_msgs.msg'",
+            within=("type",),
+        ),
     ),
     wrong="""
 def __init__(self):
@@ -286,17 +339,17 @@ def _no_type(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
     kind, _, short = own_name.partition(".")
     shown = f"there is no type {package}/{kind}/{short}"
     interfaces = workspace.code.interfaces.get(package)
-    if interfaces is not None and own_name in interfaces.unlisted:
+    if interfaces and own_name in interfaces.unlisted:
         reason = f"rosidl_generate_interfaces() of {package} does not name its file"
-        if interfaces.location is None:
+        if not interfaces.location:
             reason = f"{package} does not call rosidl_generate_interfaces()"
         return Mismatch(_INTERFACE_TYPE, f"{shown}: {reason}", at, interfaces.location)
-    if interfaces is not None:
-        names = [*interfaces.types]
+    if interfaces:
+        names = list(interfaces.types)
     else:
-        names = [*(known_interfaces(package, workspace.releases) or {})]
+        names = list(known_interfaces(package, workspace.releases) or {})
     workspace.charge(len(names))
-    change = find_change(package, own_name, workspace.releases) if interfaces is None else ""
+    change = find_change(package, own_name, workspace.releases) if not interfaces else ""
     if change:
         return Mismatch(_INTERFACE_TYPE, f"{shown} {change}", at)
     return _no_type_among(names, shown, f"{package}/", own_name, at)
@@ -323,8 +376,8 @@ def _no_type_of_kind(shown: str, name: str, names: Sequence[str], at: Location) 
         hint = f"; did you mean {meant}?"
     elif names and len(names) <= MAX_NAMED:
         hint = f"; there is {enumerated(names)}"
-    either = corrections(name, at, meant)
-    return Mismatch(_INTERFACE_TYPE, f"{shown}{hint}", at, corrections=either)
+    wrong = Mismatch(_INTERFACE_TYPE, f"{shown}{hint}", at).correcting(name, meant)
+    return wrong.offering(name, meant)
 
 
 def _used_types(workspace: Workspace, package: Package) -> Facts:
@@ -340,13 +393,14 @@ def _used_types(workspace: Workspace, package: Package) -> Facts:
         if is_own or known_interfaces(name.partition(".")[0]) is not None:
             yield Compared("interfaces")
         absent = _no_type(workspace, name, at)
-        if absent is not None:
+        if absent:
             yield absent
 
 
-def _find_interface(workspace: Workspace, package: str, name: str) -> Interface | None:
+def find_interface(workspace: Workspace, package: str, name: str) -> Interface | None:
+    """Return an interface by its package and name, msg.Twist; None where it is not known."""
     interfaces = workspace.code.interfaces.get(package)
-    if interfaces is not None:
+    if interfaces:
         own_type = interfaces.types.get(name)
         return (
             own_type.interface if own_type is not None and not own_type.interface.faults else None
@@ -359,13 +413,21 @@ def _find_interface(workspace: Workspace, package: str, name: str) -> Interface 
 
 def _used_field(workspace: Workspace, use: FieldUse) -> Facts:
     """Yield that a type has no field that is used, or that it gets a value of another type."""
-    find = partial(_find_interface, workspace)
+    find = partial(find_interface, workspace)
     used = resolve_field(use, find)
-    if used is None:
+    if not used:
         return
     field = used.section.fields.get(used.name)
-    if field is not None:
-        yield from _other_value(workspace, field, used.owner, use)
+    if field:
+        for value in use.literal:
+            if isinstance(value, list):
+                yield from _other_list(workspace, field, value, used.owner, use.location)
+            elif not _fits(field.type, value, workspace.releases):
+                message = (
+                    f"the field {field.name} of {used.owner} is {_type_in_words(field.type)}; it "
+                    f"is set to {_in_words(value)}"
+                )
+                yield Mismatch(_FIELD_VALUE, message, use.location)
     elif used.is_absent:
         yield from _no_field(workspace, used, find, use.location)
 
@@ -378,6 +440,16 @@ _INTERFACE_FIELD = Rule(
     why=(
         "Python raises an AttributeError when the line runs, often first in a callback. A C++ "
         "file does not compile."
+    ),
+    symptoms=(
+        Symptom(
+            "no-attribute",
+            pattern=r"'\w{1,200}' object has no attribute '(?P<field>\w{1,200}+)'",
+            source="python/cpython v3.11.7, Lib/traceback.py:953",
+            sentence="An object has no such field or method.",
+            example="AttributeError: 'Twist' object has no attribute 'linaer'",
+            within=("field",),
+        ),
     ),
     wrong="""
 speed = Float64()
@@ -408,7 +480,7 @@ def _no_field(
         if len(used.names) > MAX_NAMED:
             hint = f"{hint} and others"
     message = f"{used.owner} has no {used.noun} {quoted(used.name)}; {hint}"
-    yield Mismatch(_INTERFACE_FIELD, message, at, corrections=corrections(used.name, at, meant))
+    yield Mismatch(_INTERFACE_FIELD, message, at).correcting(used.name, meant)
 
 
 _FIELD_VALUE = Rule(
@@ -420,6 +492,16 @@ _FIELD_VALUE = Rule(
     why=(
         "Up to Iron the assignment raises an AssertionError that stops a Python node. Later "
         "releases convert the value or fail when the message is sent."
+    ),
+    symptoms=(
+        Symptom(
+            "field-type",
+            pattern=r"The '(?P<field>\w{1,200}+)' (?:sub )?field must be of type '",
+            source="ros2/rosidl_python 4b5dfcf, rosidl_generator_py/resource/_msg.py.em:567",
+            sentence="A field of a message is set to a value of another type.",
+            example="AssertionError: The 'data' field must be of type 'float'",
+            within=("field",),
+        ),
     ),
     wrong="""
 speed = Float64()
@@ -433,21 +515,6 @@ self.speeds.publish(speed)
 """,
     frame="tick/pilot.py",
 )
-
-
-def _other_value(
-    workspace: Workspace, field: InterfaceField, shown: str, use: FieldUse
-) -> Mismatches:
-    """Yield that a field is set to a value that its type certainly does not take."""
-    for value in use.literal:
-        if isinstance(value, list):
-            yield from _other_list(workspace, field, value, shown, use.location)
-        elif not _fits(field.type, value, workspace.releases):
-            wanted = _type_in_words(field.type)
-            message = (
-                f"the field {field.name} of {shown} is {wanted}; it is set to {_in_words(value)}"
-            )
-            yield Mismatch(_FIELD_VALUE, message, use.location)
 
 
 def _type_in_words(kind: FieldType) -> str:
@@ -465,7 +532,8 @@ def _other_list(
     refuse only what is no number, or a float among integers where the length is not fixed. That an
     integer is given for a float is a warning where no release is stated.
     """
-    kind, owner = field.type, f"the field {field.name} of {shown} is {_type_in_words(field.type)}"
+    kind = field.type
+    owner = f"the field {field.name} of {shown} is {_type_in_words(field.type)}"
     if not kind.is_list:
         if not kind.package and kind.name not in TEXTS:
             yield Mismatch(_FIELD_VALUE, f"{owner}; it is set to a list", at)
@@ -481,7 +549,8 @@ def _other_list(
         if not isinstance(item, bool | int | float | str) or _fits_item(kind, item):
             continue
         message = f"{owner}; an item is {_in_words(item)}"
-        is_certain, releases = _is_refused(kind, item, workspace.releases), workspace.releases
+        is_certain = _is_refused(kind, item, workspace.releases)
+        releases = workspace.releases
         if not is_certain and releases and not {*releases} & {*_CHECKING}:
             continue
         if not is_certain:

@@ -4,11 +4,11 @@ It is compared whether they have the type of these, whether inputs are published
 whether remappings replace names that they have.
 """
 
-import re
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 from grader.base.names import near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.end_rows import opened_ends
@@ -20,6 +20,7 @@ from grader.workspace.graph.code_ends import End
 from grader.workspace.graph.graph import grouped, make_graph
 from grader.workspace.graph.node_ends import KnownProgram, programs_in
 from grader.workspace.graph.opened_by_programs import ends_of_row
+from grader.workspace.graph.rviz_ends import list_rviz_files
 from grader.workspace.graph.unread_ends import Sought, may_be_opened
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
@@ -34,12 +35,12 @@ from grader.workspace.rules.rule_table import (
     Rule,
 )
 
-_INPUT = re.compile(r"([a-z]+)\d+")
+_INPUT = on_use(r"([a-z]+)\d+")
 _DEFAULT_DISPLAYS = "rviz_default_plugins"
 _CLASSIC = "libgazebo_ros_"  # how the names of plugins of Gazebo Classic begin, which publish
 
 
-class _Input(NamedTuple):
+class _Input(Named):
     """A topic that a program reads, and its type."""
 
     reader: str  # the parameter that names it, or the program
@@ -123,7 +124,7 @@ def _other_types(
     others = [each for each in _opened(workspace, program) if each.topic not in topics]
     for each in (*read, *inputs, *others):
         other = _other_type(published.get(each.topic, ()), each.type)
-        if other is not None:
+        if other:
             message = (
                 f"{each.reader} reads {each.topic} with {each.type}, but it is published with "
                 f"{other.type} ({other.location.file_and_line})"
@@ -134,11 +135,11 @@ def _other_types(
 def _opened(workspace: Workspace, program: KnownProgram) -> Sequence[_Input]:
     """Return what a program certainly subscribes to, in each release that may be meant."""
     node = program.node
-    row = opened_ends(node.package, node.executable)
-    if row is None:
+    row = opened_ends(*node.program)
+    if not row:
         return ()
     given = workspace.parameters.given_to(program.package, node)
-    opened: list[set[_Input]] = []
+    opened = []
     for release in workspace.releases or RELEASES:
         ends = ends_of_row(row, node, given, release)
         subscriptions = [end for end in ends if end.kind == "subscription" and not end.doubt]
@@ -162,7 +163,7 @@ def _inputs(workspace: Workspace, program: KnownProgram) -> list[_Input]:
     parameters = workspace.parameters.given_to(program.package, program.node)
     for name, given in parameters.values.items():
         numbered = _INPUT.fullmatch(name)
-        if numbered is None or numbered[1] not in row.inputs or not isinstance(given.value, str):
+        if not numbered or numbered[1] not in row.inputs or not isinstance(given.value, str):
             continue
         topic = program.node.topic(given.value)
         if topic is not None:
@@ -205,12 +206,13 @@ def _not_published(
         if each.topic in published or _may_be_published(workspace, each.topic):
             continue
         meant = _only_unread(workspace, node, each.type, published, topics)
-        if meant is not None:
+        if meant:
             message = (
                 f"{each.reader} reads {each.topic}, which nothing publishes; did you mean "
                 f"{meant.name} ({meant.location.file_and_line})?"
             )
-            yield warning(_INPUT_PUBLISHED, message, each.location, meant.location)
+            wrong = warning(_INPUT_PUBLISHED, message, each.location, meant.location)
+            yield wrong.offering(each.topic, meant.name)
 
 
 def _only_unread(
@@ -221,7 +223,7 @@ def _only_unread(
     The result is None if that is not one topic.
     """
     workspace.charge(len(published))
-    of_type: list[End] = []
+    of_type = []
     for ends in published.values():
         of_type += [end for end in ends if end.type == wanted]
     topics = {end.name for end in of_type if end.location != node.location} - read
@@ -277,7 +279,7 @@ def _other_remappings(node: StartedNode, row: ProgramRow) -> Mismatches:
                 f"{node.executable} has no topic {quoted(written)}, so its remapping does nothing; "
                 f"did you mean {meant}?"
             )
-            yield warning(_REMAPPED_TOPIC, message, node.location)
+            yield warning(_REMAPPED_TOPIC, message, node.location).offering(written, meant)
 
 
 _DISPLAY_TYPE = Rule(
@@ -304,18 +306,17 @@ _DISPLAY_TYPE = Rule(
 
 def _displays(workspace: Workspace, published: _ByTopic) -> Mismatches:
     """Yield displays of RViz that read other messages than are published."""
-    for package in workspace.packages:
-        for path in package.rviz_files:
-            for display in package.rviz(path).displays:
-                is_default = display.package == _DEFAULT_DISPLAYS
-                wanted = display_types().get(display.kind) if is_default else None
-                topic = display.node.get("Topic", "Value")
-                if wanted is None or topic is None or not display.enabled:
-                    continue
-                other = _other_type(published.get(topic.text or "", ()), wanted)
-                if other is not None:
-                    message = (
-                        f"the display {quoted(display.name)} reads {wanted}, but {topic.text} is "
-                        f"published with {other.type} ({other.location.file_and_line})"
-                    )
-                    yield warning(_DISPLAY_TYPE, message, topic.location, other.location)
+    for file in list_rviz_files(workspace):
+        for display in file.displays:
+            is_default = display.package == _DEFAULT_DISPLAYS
+            wanted = display_types().get(display.kind) if is_default else None
+            topic = display.node.get("Topic", "Value")
+            if wanted is None or not topic or not display.enabled:
+                continue
+            other = _other_type(published.get(topic.text or "", ()), wanted)
+            if other:
+                message = (
+                    f"the display {quoted(display.name)} reads {wanted}, but {topic.text} is "
+                    f"published with {other.type} ({other.location.file_and_line})"
+                )
+                yield warning(_DISPLAY_TYPE, message, topic.location, other.location)

@@ -11,9 +11,10 @@ from contextlib import suppress
 from functools import lru_cache
 
 from grader.base.errors import InputError
+from grader.base.names import first_part, last_part
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
-from grader.ros.config.yaml_values import sections_in, values_in
+from grader.ros.config.yaml_values import values_in
 from grader.ros.known.package_rows import controller_row, usual_names
 from grader.ros.known.parameter_rows import node_rows
 from grader.ros.known.releases import RELEASES, Release
@@ -29,7 +30,7 @@ from grader.workspace.rules.names import (
     Compared,
     Facts,
 )
-from grader.workspace.rules.parameter_rules import GivenNode, wrong_values
+from grader.workspace.rules.parameter_rules import GivenNode, ParameterValues, wrong_values
 
 # The node that MoveIt's joint_limits.yaml is for, and where its table is among the parameters.
 _MOVE_GROUP = "moveit_ros_move_group/move_group"
@@ -44,7 +45,7 @@ _COST_OF_VALUE = 20  # parts of comparing a value with the rows of its node
 
 def known_parameter_facts(workspace: Workspace) -> Facts:
     """Yield wrong parameters of well-known nodes, controllers and plugins, each place once."""
-    said: set[Location] = set()
+    said = set()
     for given in _given_nodes(workspace):
         workspace.charge(1 + _COST_OF_VALUE * len(given.values))
         if any(value.named_at for value in given.values.values()):
@@ -75,10 +76,10 @@ def _find_releases(workspace: Workspace, given: GivenNode) -> tuple[Release, ...
 
 def _negative_lengths(given: GivenNode) -> set[Location]:
     """Return the places of numbers of wheels that are negative, which is a mistake of values."""
-    places: set[Location] = set()
+    places = set()
     for name in controller_row(given.node).wheels:
         value = given.values.get(name)
-        if value is not None and isinstance(value.value, float) and value.value < 0.0:
+        if value and isinstance(value.value, float) and value.value < 0.0:
             places.add(value.location)
     return places
 
@@ -93,7 +94,7 @@ def _given_nodes(workspace: Workspace) -> Iterator[GivenNode]:
     for given in _limits_of_moveit(workspace):
         in_files.update(given.values)
         yield given
-    read: set[Location] = set()
+    read = set()
     for given in [*_started(workspace), *_controllers(workspace)]:
         read |= {value.location for value in given.values.values()}
         kept = given.values
@@ -109,13 +110,13 @@ def _started(workspace: Workspace) -> Iterator[GivenNode]:
     """Yield the well-known nodes that launch files start."""
     given = []
     shared: Counter[Location] = Counter()
-    for package, node in workspace.launches.nodes:
+    for package, node in workspace.launches.placed_nodes:
         values = _find_values(workspace, package, node)
         if values is None:
             continue
         is_all, values_by_name = values
         at = node.location if is_all and node.when is True else None
-        program = f"{node.package}/{node.executable}"
+        program = node.program_path
         said = repr(workspace.code.find_name(node) or node.executable)
         given.append(GivenNode(program, said, values_by_name, at))
         shared.update({value.location for value in values_by_name.values()})
@@ -128,21 +129,21 @@ def _started(workspace: Workspace) -> Iterator[GivenNode]:
 
 def _find_values(
     workspace: Workspace, package: Package, node: StartedNode
-) -> tuple[bool, Mapping[str, ParameterValue]] | None:
+) -> tuple[bool, ParameterValues] | None:
     """Return the parameters of a node of another package, and whether it gets no others.
 
     The result is None for one of the workspace, and for one that is not known by its name.
     """
-    if workspace.find_package(node) is not None:
+    if workspace.find_package(node):
         return None
     has_name = workspace.code.find_name(node) is not None and node.namespace is not None
     if not has_name and any(parameter.path for parameter in node.parameters or ()):
         return None  # any section may be its own
-    given = workspace.parameters.read_given(package, node, workspace.code.find_name(node) or "")
+    given = workspace.parameters.given_in_code(package, node)
     return not given.unknown and node.arguments == (), _without_time(given.values)
 
 
-def _without_time(values: Mapping[str, ParameterValue]) -> dict[str, ParameterValue]:
+def _without_time(values: ParameterValues) -> dict[str, ParameterValue]:
     """Return values without `use_sim_time`, which is asked for of every node."""
     return {name: value for name, value in values.items() if name != "use_sim_time"}
 
@@ -176,22 +177,19 @@ def _controllers(workspace: Workspace) -> Iterator[GivenNode]:
 def _places_for_any_name(workspace: Workspace) -> frozenset[Location]:
     """Return the places of the parameters that files give to nodes of any name."""
     places: set[Location] = set()
-    for _, tree in workspace.installed.trees:
-        for keys, section in sections_in(tree):
-            if not keys or keys[-1].strip("/") in ("*", "**"):
-                places.update(value.node.location for value in values_in(section))
+    for keys, section in workspace.installed.sections:
+        if not keys or keys[-1].strip("/") in ("*", "**"):
+            places.update(value.node.location for value in values_in(section))
     return frozenset(places)
 
 
-def _without_wrong_lists(
-    kind: str, values: Mapping[str, ParameterValue]
-) -> Mapping[str, ParameterValue]:
+def _without_wrong_lists(kind: str, values: ParameterValues) -> ParameterValues:
     """Return values without a string in place of a list of joints.
 
     Such a string is a mistake of controllers.
     """
     joints = controller_row(kind).joints
-    kept: dict[str, ParameterValue] = {}
+    kept = {}
     for name, value in values.items():
         is_wrong = name in joints and name.endswith("s") and isinstance(value.value, str)
         kept[name] = value._replace(value=_WRITTEN_OTHERWISE) if is_wrong else value
@@ -204,29 +202,27 @@ def is_as_released(workspace: Workspace, node: str) -> bool:
     No package of the workspace has it, and no file of repositories says that its source is built.
     """
     rows = node_rows(node)
-    if rows is None:
+    if not rows:
         return False
-    package = node.partition("/")[0]
-    is_own = any(
-        own_package.name == package for own_package in workspace.packages
-    ) or workspace.texts.has_plugin(node)
-    repository = rows.source.partition(",")[0].rpartition("/")[2]
+    package = first_part(node)
+    is_own = package in workspace.own_packages or workspace.texts.has_plugin(node)
+    repository = last_part(rows.source.partition(",")[0])
     return not is_own and repository not in _built_repositories(workspace)
 
 
 @lru_cache(maxsize=2)
 def _built_repositories(workspace: Workspace) -> frozenset[str]:
     """Return the names of the repositories that the files of vcstool list."""
-    names: set[str] = set()
+    names = set()
     for path, file in workspace.tree.files.items():
         if not path.endswith(".repos"):
             continue
         with suppress(YamlFault, InputError):
             listed = read_yaml(file.read(_MAX_REPOS), path).get("repositories")
-            for _, repository in listed.pairs if listed is not None else ():
+            for _, repository in listed.pairs if listed else ():
                 url = repository.get("url")
                 if url is not None and url.text:
-                    names.add(url.text.rpartition("/")[2].removesuffix(".git"))
+                    names.add(last_part(url.text).removesuffix(".git"))
     return frozenset(names)
 
 
@@ -240,20 +236,19 @@ def _sections_by_name(workspace: Workspace) -> Iterator[GivenNode]:
         (controller.location.path, controller.name): controller.type.text
         for controller in defined_controllers(workspace)
     }
-    for path, tree in workspace.installed.trees:
-        for keys, section in sections_in(tree):
-            name = keys[-1].rpartition("/")[2] if keys else ""
-            known_node = types.get((path, name)) or usual.get(name, "")
-            if known_node and is_as_released(workspace, known_node):
-                values = _without_wrong_lists(known_node, _section_values(section))
-                yield GivenNode(known_node, repr(name), values, None)
+    for keys, section in workspace.installed.sections:
+        name = last_part(keys[-1]) if keys else ""
+        known_node = types.get((section.source.path, name)) or usual.get(name, "")
+        if known_node and is_as_released(workspace, known_node):
+            values = _without_wrong_lists(known_node, _section_values(section))
+            yield GivenNode(known_node, repr(name), values, None)
 
 
 def _usual_names(workspace: Workspace) -> Mapping[str, str]:
     """Return the well-known nodes by their usual names, which no own node and no controller has."""
     usual = dict(usual_names())
-    for _, node in workspace.launches.nodes:
-        if workspace.find_package(node) is not None:
+    for node in workspace.launches.nodes:
+        if workspace.find_package(node):
             usual.pop(workspace.code.find_name(node) or "", None)
     for controller in defined_controllers(workspace):
         usual.pop(controller.name, None)
@@ -262,11 +257,11 @@ def _usual_names(workspace: Workspace) -> Mapping[str, str]:
 
 def _section_values(section: YamlNode, prefix: str = "") -> dict[str, ParameterValue]:
     """Return the values below a mapping by their dotted names, with where these end."""
-    values: dict[str, ParameterValue] = {}
+    values = {}
     for value in values_in(section):
         mapping = section.find_mapping(value.keys) if value.keys else None
         is_plain = all(isinstance(item.value, str) for item in value.node.items)
-        if mapping is not None and is_plain:
+        if mapping and is_plain:
             given = value_in_file(value.node, is_plain=False)
             at = mapping.key_location(value.keys[-1])
             values[prefix + ".".join(value.keys)] = given._replace(named_at=at)
@@ -280,12 +275,12 @@ def _limits_of_moveit(workspace: Workspace) -> Iterator[GivenNode]:
     """
     if not workspace.texts.srdf_files:
         return
-    for _, tree in workspace.installed.trees:
+    for tree in workspace.installed.trees:
         table = tree.get(_LIMITS[1])
-        if table is None or not isinstance(table.value, dict):
+        if not table:
             continue
-        keys: set[str] = set()
-        for limits in table.value.values():
+        keys = set()
+        for limits in table.table.values():
             keys |= {key for key, _ in limits.pairs}
         if keys.intersection(_SWITCHES) and keys.isdisjoint(_OF_URDF):
             prefix = ".".join(_LIMITS) + "."

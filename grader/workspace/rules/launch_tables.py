@@ -38,9 +38,9 @@ def launch_table_facts(workspace: Workspace) -> Facts:
     for package in workspace.packages:
         for source in filter(may_have_sets, workspace.texts.launch_sources(package)):
             yield Compared("parameters")
-            for table in parameter_sets(source):
+            for table, at in parameter_sets(source):
                 message = (
-                    f"{quoted(cut(table.text, _MAX_SHOWN))} is a set, which launch_ros takes for "
+                    f"{quoted(cut(table, _MAX_SHOWN))} is a set, which launch_ros takes for "
                     "the path of a file, so it sets no parameter: write a dictionary, with colons"
                 )
-                yield Mismatch(_PARAMETER_TABLE, message, table.location)
+                yield Mismatch(_PARAMETER_TABLE, message, at)

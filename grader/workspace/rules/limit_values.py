@@ -5,8 +5,8 @@ MoveIt's joint_limits.yaml and <ros2_control> may allow less than the robot, not
 
 from collections.abc import Iterator, Sequence
 from math import isfinite
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
@@ -43,7 +43,7 @@ _OF_INTERFACES = {
 }
 
 
-class _Said(NamedTuple):
+class _Said(Named):
     """A limit of a joint that a file says."""
 
     name: str  # as in joint_limits.yaml
@@ -57,25 +57,24 @@ def limit_facts(workspace: Workspace) -> Facts:
     """Yield the limits of joints that are wider than those of the robot."""
     if may_vary(workspace, "limit"):
         return
-    for _, tree in workspace.installed.trees:
+    for tree in workspace.installed.trees:
         table = tree.get(_TABLE) or tree.get("robot_description_planning", _TABLE)
-        if table is not None:
+        if table:
             for said in _said_by_moveit(table):
                 yield from _wider(said, workspace.robots.known)
     for robot in workspace.robots.known:
         for system in robot.systems:
-            limits = [*_said_by_control(robot, system)]
+            limits = list(_said_by_control(robot, system))
             for said in limits:
                 yield from _wider(said, [robot])
             yield from _exchanged(limits)
 
 
 def _said_by_moveit(table: YamlNode) -> Iterator[_Said]:
-    if not isinstance(table.value, dict):
-        return
-    for joint, limits in table.value.items():
+    for joint, limits in table.table.items():
         for name, switch in _OF_MOVEIT.items():
-            given, is_on = limits.get(name), limits.get(switch)
+            given = limits.get(name)
+            is_on = limits.get(switch)
             if given is None or is_on is None or (is_on.text or "").lower() != "true":
                 continue
             value = finite_number(given.text)
@@ -125,7 +124,7 @@ def _exchanged(limits: Sequence[_Said]) -> Facts:
     lowest = {said.joint: said for said in limits if said.name == "min_position"}
     for said in limits:
         lower = lowest.get(said.joint)
-        if said.name == "max_position" and lower is not None and lower.value > said.value:
+        if said.name == "max_position" and lower and lower.value > said.value:
             message = (
                 f"{lower.words} is {lower.value:g}, above max, which is {said.value:g}: they are "
                 "exchanged"
@@ -140,7 +139,7 @@ def _wider(said: _Said, robots: Sequence[KnownRobot]) -> Facts:
         for wider_robot in robots
         if wider_robot.robot.has_joint(said.joint)
     ]
-    limits = [(joint, joint.limit) for joint in joints if joint.limit is not None]
+    limits = [(joint, joint.limit) for joint in joints if joint.limit]
     if not limits:
         return
     yield Compared("values")

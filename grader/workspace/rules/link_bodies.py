@@ -24,7 +24,7 @@ _OF_LINK = 5  # parts
 
 def body_facts(workspace: Workspace) -> Facts:
     """Yield collisions that are beside their visuals, and moving links that Gazebo drops."""
-    said = set[tuple[str, int]]()  # of a macro, the first link
+    said = set()  # of a macro, the first link
     for robot in workspace.robots.known:
         workspace.charge(_OF_LINK * len(robot.robot.links))
         for link in robot.robot.links:
@@ -68,12 +68,13 @@ def _other_places(link: Link) -> Mismatches:
     """Yield that the only collision of a link has the shape of its only visual in another place."""
     if len(link.visuals) != 1 or len(link.collisions) != 1:
         return
-    visual, collision = link.visuals[0], link.collisions[0]
+    visual = link.visuals[0]
+    collision = link.collisions[0]
     if isinstance(visual.geometry, Mesh) or visual.geometry != collision.geometry:
         return
     away = dist(visual.origin.xyz, collision.origin.xyz)
     at = place(collision.origin.location, "xyz") or place(collision.location)
-    if away > _LEAST and at is not None:
+    if away > _LEAST and at:
         message = (
             f"the collision of {quoted(link.name)} has the shape of its visual, "
             f"{in_millimetres(away)} beside it"
@@ -143,7 +144,7 @@ def _without_mass(robot: Robot) -> Mismatches:
         carried = [joint.child]
         for name in carried:  # grows
             carried += [each.child for each in fixed.get(name, ()) if each.child not in carried]
-        if with_mass.isdisjoint(carried) and joint.location is not None:
+        if with_mass.isdisjoint(carried) and joint.location:
             message = (
                 f"{quoted(joint.child)} has no mass, so Gazebo drops the link and the joint "
                 f"{quoted(joint.name)}: give it an <inertial>"

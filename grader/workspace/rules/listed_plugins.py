@@ -2,7 +2,6 @@
 
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
-from grader.ros.config.yaml_values import sections_in
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Facts,
@@ -24,10 +23,9 @@ def listed_plugin_facts(workspace: Workspace) -> Facts:
 
     The parameters of nav2_bringup, which many copy, have a static layer in the local costmap.
     """
-    for _, tree in workspace.installed.trees:
-        for keys, section in sections_in(tree):
-            if keys and keys[-1] in _COSTMAPS:
-                yield from _unlisted(keys[-1], section)
+    for keys, section in workspace.installed.sections:
+        if keys and keys[-1] in _COSTMAPS:
+            yield from _unlisted(keys[-1], section)
 
 
 _PLUGIN_LISTED = Rule(
@@ -62,15 +60,15 @@ global_costmap:
 def _unlisted(costmap: str, section: YamlNode) -> Mismatches:
     """Yield the sections with a plugin that is in no list of a costmap."""
     plugins = section.get("plugins")
-    if plugins is None or not plugins.items:
+    if not plugins or not plugins.items:
         return
     listed = set()
     for key in _LISTS:
         names = section.get(key)
-        listed |= {name.text for name in (names.items if names is not None else ())}
+        listed |= {name.text for name in (names.items if names else ())}
     for name, inner in section.pairs:
         kind = inner.get("plugin")
         is_copied = (costmap, name) == _COPIED
-        if kind is not None and name not in listed and not is_copied:
+        if kind and name not in listed and not is_copied:
             message = f"the {costmap} does not use {quoted(name)}: its plugins do not name it"
             yield warning(_PLUGIN_LISTED, message, kind.location, plugins.location)

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator
 from functools import lru_cache
-from typing import NamedTuple
 
+from grader.base.grouping import Strings
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.gazebo_rows import gazebo
 from grader.workspace.graph.code_ends import list_frames
-from grader.workspace.graph.gazebo_topics import name_system, roots
+from grader.workspace.graph.gazebo_topics import list_systems
 from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.frames import openings
@@ -17,6 +18,7 @@ from grader.workspace.rules.rule_table import (
     UNCONNECTED,
     Rule,
 )
+from grader.workspace.rules.shared_symptoms import TREES_NOT_CONNECTED
 
 _FILTERS = ("robot_localization/ekf_node", "robot_localization/ukf_node")
 # The parameters with their frames, and the defaults of these.
@@ -28,12 +30,12 @@ _FRAMES = (
 )
 
 
-class _Lookup(NamedTuple):
+class _Lookup(Named):
     """A transform that a node looks up."""
 
     frames: tuple[str, str]
     location: Location
-    known: tuple[str, ...] = ()  # programs of which all transforms are known
+    known: Strings = ()  # programs of which all transforms are known
 
 
 class _Trees:
@@ -71,6 +73,7 @@ _TRANSFORM_CONNECTED = Rule(
         "Each lookup fails with a ConnectivityException, because the two frames are not part of"
         " the same tree. Code without a handler stops there."
     ),
+    symptoms=(TREES_NOT_CONNECTED,),
     wrong="self.buffer.lookup_transform('map', 'lidar', rclpy.time.Time())",
     right="self.buffer.lookup_transform('base_link', 'lidar', rclpy.time.Time())",
     frame="tick/pilot.py",
@@ -94,13 +97,13 @@ def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
     program in another terminal may publish other frames, such as the map, and is not likely to
     connect these.
     """
-    lookups = [*_lookups(workspace)]
+    lookups = list(_lookups(workspace))
     if not lookups or any(fact.kind == "frame" for fact in openings(workspace)):
         return
     for lookup in lookups:
         target, source = lookup.frames
         trees = _published(workspace, lookup.known)
-        if trees is None:
+        if not trees:
             continue
         yield Compared("transforms")
         if trees.are_apart(target, source):
@@ -117,8 +120,8 @@ def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
 
     A filter of robot_localization in the map needs the odometry of another source: ros_filter.cpp.
     """
-    for package, node in workspace.launches.nodes:
-        if node.when is not True:
+    for package, node in workspace.launches.placed_nodes:
+        if not node.when:
             continue
         if node.name in _FILTERS:
             parameters = workspace.parameters.given_to(package, node)
@@ -130,7 +133,7 @@ def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
                 yield _Lookup(looked_up, given["world_frame"].location, (node.executable,))
         by_call: dict[Location, list[str]] = {}
         for name, frame in list_frames(workspace, node):
-            if frame.lookup is not None:
+            if frame.lookup:
                 by_call.setdefault(frame.lookup, []).append((name or "").removeprefix("/"))
         for at, names in by_call.items():
             if len(names) == 2:
@@ -138,17 +141,12 @@ def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
 
 
 @lru_cache(maxsize=4)
-def _published(workspace: Workspace, known: tuple[str, ...]) -> _Trees | None:
+def _published(workspace: Workspace, known: Strings) -> _Trees | None:
     """Return what launch files publish, whatever conditions say; None where that is not known.
 
     Of some programs all is known.
     """
-    systems = gazebo().odometry_systems
-    if any(
-        name_system(plugin) in systems
-        for root, _ in roots(workspace)
-        for plugin in root.iter("plugin")
-    ):
+    if not list_systems(workspace).isdisjoint(gazebo().odometry_systems):
         return None
     trees = _Trees()
     for edge in make_graph(workspace).edges:

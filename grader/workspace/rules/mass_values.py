@@ -1,8 +1,8 @@
 """The centre of mass and the inertia of a link: whether they can be those of its shapes."""
 
-import re
 from math import dist, hypot, sqrt
 
+from grader.base.patterns import on_use
 from grader.base.quantities import in_millimetres, point
 from grader.base.source import place
 from grader.base.text import quoted
@@ -27,7 +27,7 @@ _MARGIN, _MARGIN_SHARE = 0.005, 0.1  # metres, and of the size of the shapes
 _EQUAL, _OTHER = 0.05, 0.2  # of the largest moment of the cylinder
 _TOO_LARGE = 2.0  # of the distance of the farthest part of the shapes
 _OF_LINK = 20  # parts
-_TURNED_BY = re.compile(r"<origin\b[^<>]*?\brpy\s*=\s*[\"']\$\{\s*(\w+)\s*\}[\"']")
+_TURNED_BY = on_use(r"<origin\b[^<>]*?\brpy\s*=\s*[\"']\$\{\s*(\w+)\s*\}[\"']")
 
 
 def mass_facts(workspace: Workspace) -> Facts:
@@ -35,15 +35,15 @@ def mass_facts(workspace: Workspace) -> Facts:
 
     A link with a mesh is not compared: only its file says what it is.
     """
-    said: set[tuple[Rule, str, int]] = set()  # of a macro, the first link
+    said = set()  # of a macro, the first link
     for robot in workspace.robots.known:
         has_large = False  # of a robot, the first link is said
         for link in robot.robot.links:
             workspace.charge(_OF_LINK)
             inertial = link.inertial
-            if inertial is None or inertial.mass <= 0.0 or inertial.location is None:
+            if not inertial or inertial.mass <= 0.0 or inertial.location is None:
                 continue
-            too_large = [] if has_large else [*_too_large(link, inertial)]
+            too_large = [] if has_large else list(_too_large(link, inertial))
             has_large = has_large or bool(too_large)
             for wrong in (
                 *_centre_outside(link, inertial),
@@ -57,12 +57,16 @@ def mass_facts(workspace: Workspace) -> Facts:
                     yield wrong
 
 
+def _elements(link: Link) -> list[Visual | Collision]:
+    return [*link.visuals, *link.collisions]
+
+
 def _placed_shapes(link: Link) -> list[PlacedShape]:
     """Return the shapes of a link in its frame; nothing if one is a mesh, of unknown size."""
-    elements: list[Visual | Collision] = [*link.visuals, *link.collisions]
-    if any(isinstance(element.geometry, Mesh) for element in elements):
+    if any(isinstance(element.geometry, Mesh) for element in _elements(link)):
         return []
-    return [PlacedShape(shape, origin.placed_in()) for shape, origin in with_volume(elements)]
+    shapes = with_volume(_elements(link))
+    return [PlacedShape(shape, origin.placed_in()) for shape, origin in shapes]
 
 
 _CENTRE_OF_MASS = Rule(
@@ -108,7 +112,7 @@ def _centre_outside(link: Link, inertial: Inertial) -> Mismatches:
         f"{in_millimetres(hypot(*outside))} outside of its shapes"
     )
     at = place(inertial.origin.location, "xyz") or place(inertial.location)
-    if at is not None:
+    if at:
         yield warning(_CENTRE_OF_MASS, message, at.resolve())
 
 
@@ -144,7 +148,7 @@ def _other_centre(link: Link, inertial: Inertial) -> Mismatches:
     A centre of mass with an offset may be meant, one at the origin of the link is forgotten.
     """
     placed = _only_shape(link)
-    if placed is None or any(inertial.origin.xyz):
+    if not placed or any(inertial.origin.xyz):
         return
     if not _is_of_solid(inertial, placed):
         return
@@ -157,15 +161,14 @@ def _other_centre(link: Link, inertial: Inertial) -> Mismatches:
         f"the inertia of {quoted(link.name)} is that of its shape about the middle, but its centre "
         f'of mass is {in_millimetres(away)} away: write <origin xyz="{point(middle)}"/>'
     )
-    assert inertial.location is not None  # which mass_facts() asks for
+    assert inertial.location  # which mass_facts() asks for
     yield warning(_INERTIA_PLACE, message, inertial.location.resolve())
 
 
 def _only_shape(link: Link) -> PlacedShape | None:
     """Return the only shape of a link, in whose middle its visuals are, too."""
-    elements: list[Visual | Collision] = [*link.visuals, *link.collisions]
     shapes = with_volume(link.collisions) or with_volume(link.visuals)
-    if len(shapes) != 1 or any(each.origin.xyz != shapes[0][1].xyz for each in elements):
+    if len(shapes) != 1 or any(each.origin.xyz != shapes[0][1].xyz for each in _elements(link)):
         return None
     shape, origin = shapes[0]
     return PlacedShape(shape, origin.placed_in())
@@ -214,7 +217,7 @@ def _too_large(link: Link, inertial: Inertial) -> Mismatches:
     if not placed:
         return
     centre = inertial.origin.placed_in().translation
-    farthest: list[float] = []
+    farthest = []
     for coordinate, (least, most) in zip(centre, _extents(placed), strict=True):
         farthest.append(max(most - coordinate, coordinate - least))
     reach = hypot(*farthest)
@@ -227,13 +230,13 @@ def _too_large(link: Link, inertial: Inertial) -> Mismatches:
         f"{radius:.3g} m; its shapes reach {reach:.3g} m"
     )
     at = place(inertial.location, None, "inertia") or place(inertial.location)
-    if at is not None:
+    if at:
         yield warning(_INERTIA_SIZE, message, at.resolve())
 
 
 def _extents(placed: list[PlacedShape]) -> list[tuple[float, float]]:
     """Return from where to where shapes reach along each axis."""
-    extents: list[tuple[float, float]] = []
+    extents = []
     for axis in _AXES:
         each = [shape.extent(axis) for shape in placed]
         extents.append((min(least for least, _ in each), max(most for _, most in each)))
@@ -296,7 +299,8 @@ def _other_axis(link: Link, inertial: Inertial) -> Mismatches:
     inertia = place(inertial.location, None, "inertia")
     if inertia is None or link.location is None:
         return
-    at, around = inertia.resolve(), link.location.resolve().calls
+    at = inertia.resolve()
+    around = link.location.resolve().calls
     inside = at.calls[len(around) :]
     if inside:  # the macro is for other links as well
         macro, call = inside[0]
@@ -307,11 +311,12 @@ def _other_axis(link: Link, inertial: Inertial) -> Mismatches:
 
 def _advice_for_call(inertial: Inertial, macro: str, *, is_direct: bool) -> str:
     """Return how to turn the inertia of one link, which a macro writes."""
-    origin, parameter = inertial.origin.location, None
-    if origin is not None and is_direct:
+    origin = inertial.origin.location
+    parameter = None
+    if origin and is_direct:
         source, start = origin.source.element(origin.tag)
         parameter = _TURNED_BY.match(source.text, start)
-    if parameter is None:
+    if not parameter:
         return f"give the link an <inertial> of its own, in place of {macro}"
     return f"pass {parameter[1]} to {macro} here, which turns the <origin> of the <inertial>"
 

@@ -3,12 +3,13 @@
 They agree in type and quality of service.
 """
 
-from typing import NamedTuple
+from collections.abc import Hashable, Iterator, Sequence
 
+from grader.base.records import Named
 from grader.ros.nodes.node_facts import EndpointKind
 from grader.workspace.graph.bridge_rows import BRIDGE, BridgeRow
 from grader.workspace.graph.code_ends import End, EndSource
-from grader.workspace.graph.graph import Graph, distinct, make_graph
+from grader.workspace.graph.graph import Graph, distinct, grouped, make_graph
 from grader.workspace.graph.node_ends import deciding_parameter
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.interfaces import is_absent
@@ -23,13 +24,14 @@ from grader.workspace.rules.rule_table import (
     NO_TOPIC,
     Rule,
 )
+from grader.workspace.rules.shared_symptoms import INCOMPATIBLE_QUALITY
 
 # What well-known programs subscribe to is compared by a rule of their topics.
 _ASKING: tuple[EndSource, ...] = ("code", "controller", "bridge")
 _OFFERING: tuple[EndSource, ...] = (*_ASKING, "program")
 
 
-class Meeting(NamedTuple):
+class Meeting(Named):
     """A kind of ends that ask for another kind, and how the two are called."""
 
     asking: EndpointKind
@@ -94,17 +96,10 @@ SERVICES = (
 )
 
 
-class _Policy(NamedTuple):
-    """A policy of quality of service: what a subscription asks for, and what is not enough."""
-
-    name: str
-    asked: str
-    offered: str
-
-
+# What a subscription asks for of a quality of service, and what is not enough.
 _POLICIES = (
-    _Policy("reliability", "reliable", "best_effort"),
-    _Policy("durability", "transient_local", "volatile"),
+    ("reliability", "reliable", "best_effort"),
+    ("durability", "transient_local", "volatile"),
 )
 
 
@@ -115,7 +110,7 @@ def meeting_facts(workspace: Workspace) -> Facts:
         every_asking = distinct(graph.of_kind(meeting.asking, sources=_ASKING))
         every_offering = distinct(graph.of_kind(meeting.offering, sources=_OFFERING))
         is_compared = False
-        for asking, offering in graph.pairs(every_asking, every_offering):
+        for asking, offering in _pairs(graph, every_asking, every_offering):
             if _is_of_other_rule(asking, offering):
                 continue
             is_compared = True
@@ -127,6 +122,31 @@ def meeting_facts(workspace: Workspace) -> Facts:
         if is_compared:
             yield Compared(meeting.rule.family)
     yield from _other_type_of_bridge(graph)
+
+
+def _pairs(
+    graph: Graph, every_asking: Sequence[End], every_offering: Sequence[End]
+) -> Iterator[tuple[End, End]]:
+    """Yield each end with those that offer it; one of those that are alike and agree with it."""
+    groups = grouped(every_offering, _compared_by)
+    firsts = [alike[0] for alike in groups.values()]
+    for asking, first in graph.pairs(every_asking, firsts):
+        if asking.type == first.type and asking.source == "controller":
+            yield asking, first
+            continue
+        alike = groups[_compared_by(first)]
+        graph.workspace.charge(len(alike))
+        for offering in alike:
+            yield asking, offering
+
+
+def _compared_by(end: End) -> Hashable:
+    """Return what decides whether an end agrees with one that asks for it."""
+    key = end.name, end.source, end.type
+    if end.source != "program":
+        return key
+    node = end.node  # a parameter of a program may decide its type
+    return *key, node.package, node.executable, node.namespace, node.node_name, node.remaps
 
 
 def _is_of_other_rule(asking: End, offering: End) -> bool:
@@ -197,6 +217,7 @@ _TOPIC_QUALITY = Rule(
         "The middleware does not connect the two. ROS 2 warns of incompatible QoS, and no "
         "message arrives although ros2 topic list shows the topic."
     ),
+    symptoms=(INCOMPATIBLE_QUALITY,),
     wrong="""
 best_effort = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 self.speeds = self.create_publisher(Float64, 'speed', best_effort)
@@ -215,10 +236,10 @@ def _other_quality(asking: End, offering: End) -> Mismatches:
     """Yield the policies of a publisher that do not satisfy a subscription: no message arrives."""
     if asking.kind != "subscription":
         return
-    for policy in _POLICIES:
-        asked = getattr(asking.endpoint.qos, policy.name)
-        offered = getattr(offering.endpoint.qos, policy.name)
-        if (asked, offered) == (policy.asked, policy.offered):
+    for policy, *unequal in _POLICIES:
+        asked = getattr(asking.endpoint.qos, policy)
+        offered = getattr(offering.endpoint.qos, policy)
+        if [asked, offered] == unequal:
             message = (
                 f"the subscription of {asking.name} asks for {asked}, but its publisher is "
                 f"{offered} ({offering.location.file_and_line})"
@@ -235,7 +256,7 @@ def _other_type_of_bridge(graph: Graph) -> Mismatches:
 
     A row of a file that no launch file names counts too, as far as all bridges keep their names.
     """
-    bridges = [node for _, node in graph.workspace.launches.nodes if node.package == BRIDGE]
+    bridges = [node for node in graph.workspace.launches.nodes if node.package == BRIDGE]
     is_plain = all(node.remaps == () and node.namespace in ("", "/") for node in bridges)
     if not bridges or not is_plain:
         return

@@ -7,10 +7,10 @@ criterion reads a mesh.
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from math import hypot, inf
-from typing import NamedTuple
 
 from grader.base.errors import InputError, NotDecided
 from grader.base.problems import Problem
+from grader.base.records import Named
 from grader.base.source import LazyLocation, Location
 from grader.base.transforms import Vector
 from grader.files.tree import File
@@ -25,14 +25,16 @@ from grader.workspace.rules.rule_table import (
 )
 
 # What is about a factor of 1000, and for which ones in a sample a whole mesh is read.
-_LEAST, _MOST, _SUSPECT = 500.0, 2000.0, 100.0
+_LEAST = 500.0
+_MOST = 2000.0
+_SUSPECT = 100.0
 _LARGE, _SMALL = 5.0, 0.005  # metres, which no mesh in the right unit has that is off by as much
 _HUGE = 100.0  # metres, of a mesh beside which its link has nothing
 _MAX_READ = 4 * 1024 * 1024  # bytes of a mesh that is read whole
 _BYTES_A_PART = 64
 
 
-class _Reference(NamedTuple):
+class _Reference(Named):
     """A length in metres with which a mesh is compared, and what has it."""
 
     length: float
@@ -44,15 +46,16 @@ def mesh_size_problems(workspace: Workspace) -> list[Problem]:
 
     Meshes are read until the budget of the workspace is spent.
     """
-    meshes, problems = _Meshes(workspace), dict[tuple[str, Location], Problem]()
+    meshes = _Meshes(workspace)
+    problems = dict[tuple[str, Location], Problem]()
     with suppress(NotDecided, InputError):
         for urdf in workspace.urdfs:
             loaded = urdf.loaded
-            if loaded.robot is None or loaded.undetermined or loaded.verdict == "rejected":
+            if not loaded.robot or loaded.undetermined or loaded.verdict == "rejected":
                 continue
             for problem in _find_problems(meshes, urdf, loaded.robot):
                 problems.setdefault((problem.message, problem.location), problem)
-    return [*problems.values()]
+    return list(problems.values())
 
 
 def _find_problems(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Problem]:
@@ -64,10 +67,10 @@ def _find_problems(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Prob
     for link in robot.links:
         for mesh in _list_meshes(link):
             about = meshes.length(urdf, mesh, is_exact=False)
-            if about is None or mesh.location is None:
+            if about is None or not mesh.location:
                 continue
             reference = _find_reference(meshes, urdf, link, about, reach)
-            if reference is None or not _is_off(about, reference.length, _SUSPECT, inf):
+            if not reference or not _is_off(about, reference.length, _SUSPECT, inf):
                 continue
             length = meshes.length(urdf, mesh, is_exact=True)
             if length is not None and _is_off(length, reference.length, _LEAST, _MOST):
@@ -76,7 +79,7 @@ def _find_problems(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Prob
 
 def _longest_origin(robot: Robot) -> float:
     """Return how far the origin of a joint is from its parent at most, in metres."""
-    origins = [joint.origin for joint in robot.joints if joint.origin is not None]
+    origins = [joint.origin for joint in robot.joints if joint.origin]
     return max((hypot(*origin.xyz) for origin in origins), default=0.0)
 
 
@@ -88,7 +91,7 @@ def _find_reference(
     For a huge mesh without anything beside it, this is `reach`, the longest origin of a joint.
     """
     reference = _of_primitives(link) or meshes.reference(urdf, _list_meshes(link))
-    if reference is None and about > _HUGE and reach > 0.0:
+    if not reference and about > _HUGE and reach > 0.0:
         return _Reference(reach, "the longest <origin> of a joint")
     return reference
 
@@ -203,7 +206,7 @@ class _Meshes:
         if key not in self._sizes:
             file = name.file_in(self._workspace.packages)
             self._sizes[key] = None
-            if file is not None:
+            if file:
                 self._sizes[key] = self._measure(file) if is_exact else self._sample(file)
         size = self._sizes[key]
         if size is None:

@@ -1,17 +1,19 @@
-"""Time stamps of messages and transforms that own code sends, where what reads them compares times.
+"""Time stamps and frames of messages and transforms that own code sends, where readers need them.
 
-Only code that never names a stamp, and makes its messages itself, surely sends none.
+Only code that never names them, and makes its messages itself, surely sends none.
 """
 
 import re
 from collections.abc import Mapping
 
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source
 from grader.ros.known.package_rows import package_row
+from grader.ros.nodes.node_facts import NodeFacts
 from grader.workspace.graph.code_ends import End
 from grader.workspace.graph.graph import Graph, make_graph
 from grader.workspace.model.code_text import code_alone
-from grader.workspace.model.own_code import CPP_ENDINGS
+from grader.workspace.model.text_files import CODE_ENDINGS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
@@ -31,7 +33,15 @@ _STAMPED = frozenset(
     }
 )
 # What may set a stamp: its name, or a header as a whole; a file of a type does not.
-_MAY_SET = re.compile(r"stamp(?!ed\.h)|[Hh]eader\b(?!\s*+\.\s*+frame_id\b)")
+_MAY_SET = on_use(r"stamp(?!ed\.h)|[Hh]eader\b(?!\s*+\.\s*+frame_id\b)")
+# What is for RViz alone, or for what asks where it is, and what may set its frame.
+_PLACED = {
+    "visualization_msgs.msg.Marker": "Marker",
+    "visualization_msgs.msg.MarkerArray": "Marker",
+    "nav_msgs.msg.OccupancyGrid": "OccupancyGrid",
+    "nav_msgs.msg.Path": "Path",
+}
+_MAY_PLACE = on_use(r"[Ff]rame|[Hh]eader\b(?!\s*+\.\s*+stamp\b)")
 # Of robot_state_publisher: whether it publishes what is older than what it published last.
 _IGNORES = "ignore_timestamp"
 
@@ -62,6 +72,28 @@ self.frames.sendTransform(frame)
 )
 
 
+_MESSAGE_FRAME = Rule(
+    "message-frame",
+    "messages",
+    NO_MESSAGE,
+    "Markers, maps and paths have the frame that they are in.",
+    why="RViz shows none of them: it reports that the frame with the empty name does not exist.",
+    wrong="""
+marker = Marker()
+marker.type = Marker.SPHERE
+self.markers.publish(marker)
+""",
+    right="""
+marker = Marker()
+marker.header.frame_id = 'map'
+marker.type = Marker.SPHERE
+self.markers.publish(marker)
+""",
+    frame="joints/marker.py",
+    at="rover/marker.py",
+)
+
+
 def message_stamp_facts(workspace: Workspace) -> Facts:
     """Yield messages and transforms without a stamp.
 
@@ -70,30 +102,42 @@ def message_stamp_facts(workspace: Workspace) -> Facts:
     """
     sources = _CodeSources(workspace)
     yield from _of_messages(make_graph(workspace), sources)
-    for code in workspace.code.by_package.values():
-        for node in code.nodes:
-            for transform in node.transforms:
-                if transform.is_static:
-                    continue
-                yield Compared("messages")
-                if sources.lack_stamps(transform.location, "TransformStamped"):
-                    message = (
-                        "the transform has no stamp, and tf2 ignores all after the first one: set "
-                        "header.stamp to the time of the node's clock"
-                    )
-                    yield warning(_MESSAGE_STAMP, message, transform.location)
-                    break
+    for node in workspace.code.nodes:
+        yield from _without_frame(node, sources)
+        for transform in node.transforms:
+            if transform.is_static:
+                continue
+            yield Compared("messages")
+            if sources.lack(_MAY_SET, transform.location, "TransformStamped"):
+                message = (
+                    "the transform has no stamp, and tf2 ignores all after the first one: set "
+                    "header.stamp to the time of the node's clock"
+                )
+                yield warning(_MESSAGE_STAMP, message, transform.location)
+                break
+
+
+def _without_frame(node: NodeFacts, sources: "_CodeSources") -> Facts:
+    """Yield the publishers of a node of what has no frame, though it needs one."""
+    for end in node.endpoints:
+        name = _PLACED.get(end.type or "", "") if end.kind == "publisher" else ""
+        if name:
+            yield Compared("messages")
+            if sources.lack(_MAY_PLACE, end.location, name):
+                message = f"the {name} has no frame, so RViz does not show it: set header.frame_id"
+                yield warning(_MESSAGE_FRAME, message, end.location)
 
 
 def _of_messages(graph: Graph, sources: "_CodeSources") -> Mismatches:
     """Yield the publishers of messages without a stamp, which a program needs."""
-    said = set[Location]()
+    said = set()
     publishers = [end for end in graph.certain("publisher", "code") if end.type in _STAMPED]
     for sent, read in graph.pairs(publishers, graph.certain("subscription", "program")):
-        at, name = sent.location, (sent.type or "").rpartition(".")[2]
+        at = sent.location
+        name = (sent.type or "").rpartition(".")[2]
         if at in said or read.type != sent.type or not _compares_times(read):
             continue
-        if not _passes_on(graph, sent) and sources.lack_stamps(at, name):
+        if not _passes_on(graph, sent) and sources.lack(_MAY_SET, at, name):
             said.add(at)
             message = (
                 f"the {name} has no stamp, so {read.node.executable} does not use it: set "
@@ -125,17 +169,14 @@ class _CodeSources:
         self._workspace = workspace
         self._sources: Mapping[str, Source] | None = None
 
-    def lack_stamps(self, at: Location, name: str) -> bool:
-        """Return whether a file makes messages of a type, and sets no stamp."""
+    def lack(self, may_set: re.Pattern[str], at: Location, name: str) -> bool:
+        """Return whether a file makes messages of a type, and nothing in it may set a field."""
         if self._sources is None:
-            by_path: dict[str, Source] = {}
-            for package in self._workspace.packages:
-                for source in self._workspace.texts.read_sources(package, (".py", *CPP_ENDINGS)):
-                    by_path[source.path] = source
-            self._sources = by_path
+            sources = self._workspace.texts.every_source(CODE_ENDINGS)
+            self._sources = {source.path: source for source in sources}
         code_file = self._sources.get(at.path)
         if code_file is None:
             return False
         code = code_alone(code_file.text, code_file.path)
         made = rf"\b{name}\s*+\(" if at.path.endswith(".py") else rf"\b{name}\s++\w++\s*+[;{{(]"
-        return not _MAY_SET.search(code) and re.search(made, code) is not None
+        return not may_set.search(code) and re.search(made, code) is not None

@@ -30,7 +30,7 @@ def mimic_facts(workspace: Workspace) -> Facts:
         return
     is_certain = bool(places) and min(places) >= _SINCE
     for robot in workspace.robots.known:
-        mimics = {joint.name for joint in robot.robot.joints if joint.mimic is not None}
+        mimics = {joint.name for joint in robot.robot.joints if joint.mimic}
         for system in robot.systems:
             yield Compared("controllers")
             for joint in system.iterchildren("joint"):

@@ -1,9 +1,9 @@
 """Topics, services and actions without another end, where a similar or fitting one is free."""
 
 from collections.abc import Collection, Iterator, Sequence
-from typing import NamedTuple
 
-from grader.base.names import closest, is_misspelling
+from grader.base.names import closest, first_part, is_misspelling, last_part
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.ros.known.shared_names import shared_names
 from grader.workspace.graph.bridge_rows import BRIDGE, bridge_rows
@@ -24,7 +24,7 @@ from grader.workspace.rules.names import (
     Mismatches,
     Open,
     Use,
-    corrections,
+    charge_guess,
 )
 from grader.workspace.rules.rule_table import (
     NO_SERVICE,
@@ -33,7 +33,7 @@ from grader.workspace.rules.rule_table import (
 )
 
 
-class _Offer(NamedTuple):
+class _Offer(Named):
     """A topic that something publishes in a launch, by its name and its type."""
 
     topic: str
@@ -60,7 +60,7 @@ def _without_publisher(
     The similar topic is one that is not subscribed to.
     """
     workspace = graph.workspace
-    offers = [*_offers(workspace, publishers)]
+    offers = list(_offers(workspace, publishers))
     offered = {offer.topic for offer in offers}
     offered |= {end.name for end in graph.of_kind("publisher", sources=("program",))}
     subscribed = {end.name for end in subscriptions}
@@ -114,7 +114,7 @@ def _similar_topic(workspace: Workspace, end: End, alike: Sequence[_Offer]) -> F
     Else yield that it uses its own, to which a similar name may be a correction. Names that differ
     in a whole word are of two things: hardware may have the other end of each.
     """
-    workspace.charge(len(alike))
+    charge_guess(workspace, alike)
     places = {offer.topic: offer.location for offer in alike if offer.launch == end.launch}
     meant = closest(end.name, places)
     if meant is not None and not is_misspelling(end.name, meant):
@@ -135,11 +135,12 @@ def _may_be_published(workspace: Workspace, end: End) -> bool:
         return True
     if is_own_type(workspace, end.type):
         return False
-    name, last = end.name.strip("/"), end.name.rpartition("/")[2]
-    if last in shared_names().topics or name.partition("/")[0] in workspace.installed.controllers:
+    name = end.name.strip("/")
+    last = last_part(end.name)
+    if last in shared_names().topics or first_part(name) in workspace.installed.controllers:
         return True
     # A parameter, or a remapping of a plugin, may name what something publishes.
-    texts = [tree.source.text for _, tree in workspace.installed.trees]
+    texts = [tree.source.text for tree in workspace.installed.trees]
     for robot in workspace.robots.known:
         texts += [tag.text or "" for tag in robot.root.iter("remapping", "ros_topic")]
     return any(name in text for text in texts)
@@ -148,8 +149,7 @@ def _may_be_published(workspace: Workspace, end: End) -> bool:
 def _no_other_end(rule: Rule, what: str, end: End, meant: str, at: Location) -> Mismatch:
     """Return that an end has no other one, and the name that it surely means."""
     message = f"{what}; did you mean {meant} ({at.file_and_line})?"
-    either = corrections(end.name, end.location, meant, at)
-    return Mismatch(rule, message, end.location, at, corrections=either)
+    return Mismatch(rule, message, end.location, at).correcting(end.name, meant, at)
 
 
 def _without_subscription(
@@ -166,8 +166,9 @@ def _without_subscription(
     subscribed = {end.name for end in subscriptions} | graph.names_read
     unheard = [end for end in of_code if end.name not in subscribed]
     named: set[Location] = set()
+    publishing = grouped(of_code, lambda end: end.name)
     for waiting in subscriptions:
-        launches = {end.launch for end in of_code if end.name == waiting.name}
+        launches = {end.launch for end in publishing.get(waiting.name, ())}
         if waiting.source == "controller" and waiting.launch not in launches:
             meant = unheard
             if launches:  # a person may start another one, which feeds it
@@ -184,7 +185,7 @@ def _meant_for(
         if publisher.location in named:
             continue
         mismatch = _unheard(graph.workspace, publisher, waiting, is_only=len(fitting) == 1)
-        if mismatch is not None:
+        if mismatch:
             named.add(publisher.location)
             yield mismatch
 
@@ -218,7 +219,8 @@ def _unheard(
     """
     if _may_be_of_gazebo(workspace, publisher, waiting):
         return None
-    at, place = publisher.location, waiting.location
+    at = publisher.location
+    place = waiting.location
     is_certain = publisher.surely_meets(waiting) and is_all_read(workspace, waiting.launch)
     is_same = _last_names(publisher, 1) == _last_names(waiting, 1)
     if not is_same and not (is_certain and is_only):
@@ -227,7 +229,8 @@ def _unheard(
         f"nothing subscribes to {publisher.name}; did you mean {waiting.name} "
         f"({place.file_and_line})?"
     )
-    return Mismatch(_TOPIC_SUBSCRIBED, message, at, place, is_certain)
+    wrong = Mismatch(_TOPIC_SUBSCRIBED, message, at, place, is_certain)
+    return wrong.offering(publisher.name, waiting.name)
 
 
 def _last_names(end: End, count: int) -> list[str]:

@@ -1,8 +1,8 @@
 """Files of MoveIt: the joints, groups and controllers that joint_limits.yaml and others name."""
 
 from collections.abc import Collection, Iterator
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlNode
@@ -18,12 +18,12 @@ from grader.workspace.rules.names import (
     Mismatches,
     Use,
     among,
-    corrections,
 )
-from grader.workspace.rules.rule_table import (
-    NO_CONTROLLER,
-    NO_PARAMETER,
-    Rule,
+from grader.workspace.rules.rule_table import NO_CONTROLLER, NO_PARAMETER, Rule
+from grader.workspace.rules.shared_symptoms import (
+    ACTION_NOT_CONNECTED,
+    JOINTS_WITHOUT_CONTROLLER,
+    TYPE_EXPECTED,
 )
 from grader.workspace.rules.spawners import started_controllers
 
@@ -38,14 +38,15 @@ def moveit_facts(workspace: Workspace) -> Facts:
     if not workspace.robots.known:
         return
     left_out = _not_spawned(workspace)
-    for path, tree in workspace.installed.trees:
+    for tree in workspace.installed.trees:
+        path = tree.source.path
         if path.endswith(_OF_PIPELINE):
             yield from _text_for_list(workspace, tree)
         compared = robots_for_file(workspace, path)
         for use in _joints_and_groups(tree):
             yield among(use, compared)
         manager = tree.get(_MANAGER)
-        for controller in _controllers(manager) if manager is not None else ():
+        for controller in _controllers(manager) if manager else ():
             for use in _list_names(workspace, controller):
                 yield among(use, compared)
             yield from _not_started(controller, left_out)
@@ -63,6 +64,7 @@ _PLANNING_LIST = Rule(
         "move_group of Jazzy and later declares a list of strings. A single string raises an "
         "exception about the parameter type, and move_group ends at its start."
     ),
+    symptoms=(TYPE_EXPECTED,),
     wrong="""
 planning_plugin: ompl_interface/OMPLPlanner
 request_adapters: default_planner_request_adapters/FixWorkspaceBounds
@@ -87,28 +89,27 @@ def _text_for_list(workspace: Workspace, tree: YamlNode) -> Mismatches:
     adapters = tree.get("request_adapters")
     if not releases or any(is_before(release, "jazzy") for release in releases):
         return
-    if adapters is not None and isinstance(adapters.value, str):
+    if adapters and isinstance(adapters.value, str):
         message = (
             "request_adapters is a text, so move_group stops: from Jazzy on it is a list, as "
             "planning_plugins is in place of planning_plugin"
         )
-        yield Mismatch(_PLANNING_LIST, message, tree.key_location("request_adapters"))
+        at = tree.key_location("request_adapters")
+        yield Mismatch(_PLANNING_LIST, message, at, names=("string_array", "string"))
 
 
 def _joints_and_groups(tree: YamlNode) -> Iterator[Use]:
     """Yield the joints and groups in the tables of a file."""
     for key in _TABLES_OF_JOINTS:
         table = tree.get(key)
-        if table is not None and isinstance(table.value, dict):
-            for name, node in table.value.items():
-                yield Use("joint", name, node.location, key)
-    if isinstance(tree.value, dict):
-        for name, node in tree.value.items():
-            if node.get("kinematics_solver") is not None:
-                yield Use("group", name, node.location, "kinematics_solver")
+        for name, node in table.table.items() if table else ():
+            yield Use("joint", name, node.location, key)
+    for name, node in tree.table.items():
+        if node.get("kinematics_solver"):
+            yield Use("group", name, node.location, "kinematics_solver")
 
 
-class _MoveItController(NamedTuple):
+class _MoveItController(Named):
     """A controller of ros2_control to which MoveIt sends goals."""
 
     name: str
@@ -124,9 +125,9 @@ class _MoveItController(NamedTuple):
 def _controllers(manager: YamlNode) -> Iterator[_MoveItController]:
     """Yield the controllers of a list of plugins that have a section."""
     names = manager.get("controller_names")
-    for node in names.items if names is not None else ():
+    for node in names.items if names else ():
         section = manager.get(node.text or "")
-        if section is not None:
+        if section:
             yield _MoveItController(node.text or "", node.location, section)
 
 
@@ -135,11 +136,12 @@ def _list_names(workspace: Workspace, controller: _MoveItController) -> Iterator
 
     Without definitions, the robot's driver has the controllers; another robot may have one too.
     """
-    name, at = controller.name, controller.location
+    name = controller.name
+    at = controller.location
     if defined_controllers(workspace):
         is_optional = workspace.robots.may_be_others
         yield Use("controller", name, at, "controller_names", optional=is_optional)
-    for joint in controller.joints.items if controller.joints is not None else ():
+    for joint in controller.joints.items if controller.joints else ():
         yield Use("joint", joint.text or "", joint.location, f"{name}.joints")
 
 
@@ -151,6 +153,10 @@ _MOVEIT_CONTROLLER = Rule(
     why=(
         "Planning succeeds and execution fails: MoveIt waits for an action that no controller "
         "offers, then reports that its action client is not connected."
+    ),
+    symptoms=(
+        ACTION_NOT_CONNECTED,
+        JOINTS_WITHOUT_CONTROLLER,
     ),
     wrong="""
 moveit_simple_controller_manager:
@@ -216,6 +222,10 @@ _MOVEIT_ACTION = Rule(
         "MoveIt ignores the controller or waits for an action that does not exist. It plans, "
         "but every execution fails and the robot does not move."
     ),
+    symptoms=(
+        ACTION_NOT_CONNECTED,
+        JOINTS_WITHOUT_CONTROLLER,
+    ),
     wrong="""
 moveit_simple_controller_manager:
   controller_names: [arm_controller]
@@ -239,18 +249,19 @@ def _other_action(controller: _MoveItController) -> Mismatches:
 
     moveit_simple_controller_manager.cpp of Humble and Jazzy leaves out one without action_ns.
     """
-    kind, action = controller.section.get("type"), controller.section.get("action_ns")
-    if kind is None:
+    kind = controller.section.get("type")
+    action = controller.section.get("action_ns")
+    if not kind:
         return
     wanted = moveit_actions().get(kind.text or "")
     if wanted is None and kind.text and kind.text not in _NEWER_TYPES:
         message = (
             f"MoveIt has no type {kind.text!r} of controllers, so it leaves out {controller.name}: "
-            f"it has {enumerated([*moveit_actions()])}"
+            f"it has {enumerated(moveit_actions())}"
         )
         yield Mismatch(_MOVEIT_ACTION, message, kind.location, is_certain=False)
         return
-    if action is None:
+    if not action:
         if wanted is not None:
             message = (
                 f"{controller.name} has no action_ns, so MoveIt leaves it out: add action_ns: "
@@ -263,8 +274,8 @@ def _other_action(controller: _MoveItController) -> Mismatches:
             f"{controller.name}.action_ns is {action.text!r}; the action of its controller is "
             f"{wanted!r}"
         )
-        either = corrections(action.text or "", action.location, wanted)
-        yield Mismatch(_MOVEIT_ACTION, message, action.location, kind.location, corrections=either)
+        wrong = Mismatch(_MOVEIT_ACTION, message, action.location, kind.location)
+        yield wrong.correcting(action.text or "", wanted)
 
 
 _MOVEIT_JOINTS = Rule(
@@ -276,6 +287,7 @@ _MOVEIT_JOINTS = Rule(
         "The controller rejects trajectories for joints that it does not have, or MoveIt finds "
         "no controller for some joints. The robot does not move."
     ),
+    symptoms=(JOINTS_WITHOUT_CONTROLLER,),
     wrong="""
 moveit_simple_controller_manager:
   controller_names: [arm_controller]
@@ -306,17 +318,19 @@ def _other_joints(workspace: Workspace, controller: _MoveItController) -> Mismat
 
     MoveIt sends no goals for joints that follow others.
     """
-    joints, controlled = controller.joints, _controlled_joints(workspace, controller.name)
+    joints = controller.joints
+    controlled = _controlled_joints(workspace, controller.name)
     if joints is None or controlled is None:
         return
-    names: set[str] = set()
-    following: set[str] = set()
+    names = set()
+    following = set()
     for known_robot in workspace.robots.known:
         for joint in known_robot.robot.joints:
             names.add(joint.name)
-            if joint.mimic is not None:
+            if joint.mimic:
                 following.add(joint.name)
-    by_moveit, by_controller = _joint_names(joints), _joint_names(controlled)
+    by_moveit = _joint_names(joints)
+    by_controller = _joint_names(controlled)
     differing = sorted((by_moveit ^ by_controller) - following)
     if by_moveit and by_controller and differing and names.issuperset(differing):
         message = (
@@ -328,8 +342,8 @@ def _other_joints(workspace: Workspace, controller: _MoveItController) -> Mismat
 
 def _controlled_joints(workspace: Workspace, name: str) -> YamlNode | None:
     """Return the joints in the parameters of a controller; None unless one file has some."""
-    sections: list[YamlNode] = []
-    for _, tree in workspace.installed.trees:
+    sections = []
+    for tree in workspace.installed.trees:
         sections += [section for keys, section in sections_in(tree) if keys[-1:] == (name,)]
     if len(sections) != 1:
         return None

@@ -53,7 +53,8 @@ def name_problems(workspace: Workspace) -> tuple[Problem, ...]:
 
     The packages that one package.xml lacks are one problem.
     """
-    agreement, name_fixes = read_agreement(workspace), NameFixes(workspace)
+    agreement = read_agreement(workspace)
+    name_fixes = NameFixes(workspace)
     problems = []
     for wrong in _with_one_for_a_manifest(workspace, agreement.mismatches):
         problem = wrong.rule.problem(wrong.message, wrong.location, is_certain=wrong.is_certain)
@@ -64,12 +65,11 @@ def name_problems(workspace: Workspace) -> tuple[Problem, ...]:
             names=(*wrong.names, wrong.word),
         )
         place = name_fixes.place_of_word(wrong)
-        if place is not None:
+        if place:
             problem = problem._replace(location=place, around=wrong.location)
         problems.append(problem)
     for at in agreement.unused:
-        message = "no other file of the workspace names this file"
-        problems.append(_FILE_USED.problem(message, at))
+        problems.append(_FILE_USED.problem("no other file of the workspace names this file", at))
     # Of a macro of xacro that several robots call, each place once.
     by_place: dict[tuple[object, ...], Problem] = {}
     for problem in problems:
@@ -85,7 +85,7 @@ def _with_one_for_a_manifest(workspace: Workspace, mismatches: Iterable[Mismatch
     are those that CMake needs.
     """
     lacked: dict[tuple[object, ...], list[Mismatch]] = {}
-    every = [*_without_repeated_packages([*mismatches])]
+    every = list(_without_repeated_packages([*mismatches]))
     for mismatch in every:
         if mismatch.lacked:
             lacked.setdefault(_make_group(mismatch), []).append(mismatch)
@@ -106,7 +106,7 @@ def _without_repeated_packages(mismatches: Sequence[Mismatch]) -> Mismatches:
     dependency that a file uses, it drops that rosdep does not know it.
     """
     absent = {mismatch.word for mismatch in mismatches if mismatch.rule.name == "package-exists"}
-    misspelt: set[str] = set()
+    misspelt = set()
     for mismatch in mismatches:
         if mismatch.rule.name == "dependency-declared":
             misspelt |= {correction.new for correction in mismatch.corrections}
@@ -133,6 +133,6 @@ def _lacked_text(workspace: Workspace, mismatches: Sequence[Mismatch]) -> str:
     manifest = mismatches[0].related
     owner = ""
     for package in workspace.packages:
-        if manifest is not None and package.path(MANIFEST) == manifest.path:
+        if manifest and package.path(MANIFEST) == manifest.path:
             owner = package.name
     return f"package.xml of {owner!r} does not declare {in_quotes(names)}, {used}: add {tags}"

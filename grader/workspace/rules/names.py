@@ -3,16 +3,19 @@
 A name that is used has to be defined somewhere.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
 from fnmatch import fnmatchcase
 from itertools import chain
 from typing import NamedTuple
 
+from grader.base.grouping import Strings
 from grader.base.names import are_of_one_side, closest, near
 from grader.base.problems import NO_FIXES, Fixes
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import counted, quoted
 from grader.workspace.graph.compared_robots import ComparedRobots
+from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.rule_table import (
     FAMILIES,
     NO_ARGUMENT,
@@ -24,6 +27,15 @@ from grader.workspace.rules.rule_table import (
     AnyFamily,
     DefinedKind,
     Rule,
+    Symptom,
+)
+from grader.workspace.rules.shared_symptoms import (
+    ACTION_NOT_CONNECTED,
+    CONTROLLER_NOT_LOADED,
+    INTERFACE_MISSING,
+    INTERFACE_NOT_AVAILABLE,
+    INTERFACES_NOT_ACCEPTED,
+    TREES_NOT_CONNECTED,
 )
 
 _MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either way
@@ -38,6 +50,7 @@ _FRAME_DEFINED = Rule(
         "tf2 has no transform for a frame that nothing publishes: lookups fail with "
         "LookupException, and RViz prints that the frame does not exist."
     ),
+    symptoms=(TREES_NOT_CONNECTED,),
     wrong="""
 Node(
     package='tf2_ros',
@@ -63,6 +76,21 @@ _LINK_DEFINED = Rule(
         "Gazebo ignores a <gazebo> element for an unknown link, so its friction or sensor is "
         "missing. MoveIt ignores unknown links of an SRDF."
     ),
+    symptoms=(
+        Symptom(
+            "group-link",
+            pattern=(
+                r"Link '(?P<link>[^']{1,200}+)' declared as part of (?:a chain in )?group "
+                r"'(?P<group>[^']{1,200}+)' is not known to the URDF"
+            ),
+            source="moveit/srdfdom e23af6e, src/model.cpp:147",
+            sentence="A group of the SRDF names a link that the robot does not have.",
+            example=(
+                "Link 'tool9' declared as part of a chain in group 'arm' is not known to the URDF"
+            ),
+            within=("link",),
+        ),
+    ),
     wrong='<gazebo reference="base_lnk"><mu1>0.9</mu1></gazebo>',
     right='<gazebo reference="base_link"><mu1>0.9</mu1></gazebo>',
     frame="rover.urdf",
@@ -76,6 +104,22 @@ JOINT_DEFINED = Rule(
     why=(
         "A controller cannot claim the interfaces of an unknown joint, so it does not become "
         "active. MoveIt ignores the limits of such a joint."
+    ),
+    symptoms=(
+        Symptom(
+            "group-joint",
+            pattern=(
+                r"Joint '(?P<joint>[^']{1,200}+)' declared as part of group "
+                r"'(?P<group>[^']{1,200}+)' is not known to the URDF"
+            ),
+            source="moveit/srdfdom e23af6e, src/model.cpp:166",
+            sentence="A group of the SRDF names a joint that the robot does not have.",
+            example="Joint 'elbw' declared as part of group 'arm' is not known to the URDF",
+            within=("joint",),
+        ),
+        INTERFACE_MISSING,
+        INTERFACES_NOT_ACCEPTED,
+        INTERFACE_NOT_AVAILABLE,
     ),
     wrong="""
 joint_limits:
@@ -99,6 +143,16 @@ _GROUP_DEFINED = Rule(
     why=(
         "MoveIt looks up solvers and planners by the name of the group. Settings under another "
         "name have no effect, and a group may have no kinematics solver."
+    ),
+    symptoms=(
+        Symptom(
+            "group-unknown",
+            pattern=r"Group '(?P<group>[^']{1,200}+)' not found in model",
+            source="moveit/moveit2 8fcb5d232, moveit_core/robot_model/src/robot_model.cpp:517",
+            sentence="Code or a file names a group that the SRDF does not have.",
+            example="Group 'manipulater' not found in model 'cell'",
+            within=("group",),
+        ),
     ),
     wrong="""
 arms:
@@ -124,6 +178,10 @@ _CONTROLLER_DEFINED = Rule(
         "The controller manager prints that the 'type' param was not defined, the spawner ends "
         "with an error, and the controller is not loaded."
     ),
+    symptoms=(
+        CONTROLLER_NOT_LOADED,
+        ACTION_NOT_CONNECTED,
+    ),
     wrong="""
 Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
 Node(package='controller_manager', executable='spawner', arguments=['arm_contoller']),
@@ -148,6 +206,21 @@ _PARAMETER_DEFINED = Rule(
         "ROS 2 ignores a value for an undeclared parameter without a message, so the default "
         "counts. Code that reads one stops with ParameterNotDeclaredException."
     ),
+    symptoms=(
+        Symptom(
+            "parameter-undeclared",
+            pattern=(
+                r"Invalid access to undeclared parameter\(s\): \[?'?(?P<parameter>[\w.-]{1,200}+)"
+            ),
+            source="ros2/rclpy ba72a01, rclpy/rclpy/exceptions.py:90",
+            sentence="Code reads a parameter that the node does not declare.",
+            example=(
+                "rclpy.exceptions.ParameterNotDeclaredException: Invalid access to undeclared "
+                "parameter(s): speed"
+            ),
+            within=("parameter",),
+        ),
+    ),
     wrong="Node(package='rover', executable='joystick', parameters=[{'sped': 2.0}]),",
     right="Node(package='rover', executable='joystick', parameters=[{'speed': 2.0}]),",
     beside={
@@ -163,6 +236,19 @@ _PLUGIN_SECTION = Rule(
     why=(
         "Nav2 reads the class of a plugin from its section. Without it the node prints that it "
         "cannot get the 'plugin' param and stops; a sensor source keeps defaults."
+    ),
+    symptoms=(
+        Symptom(
+            "plugin-without-type",
+            pattern=r"Can not get 'plugin' param value for (?P<plugin>[\w.-]{1,200}+)",
+            source=(
+                "ros-navigation/navigation2 a3a97043e, nav2_ros_common/include/nav2_ros_common/"
+                "node_utils.hpp:338"
+            ),
+            sentence="A plugin of a list has no section with its class.",
+            example="Can not get 'plugin' param value for FollowPath",
+            within=("plugin",),
+        ),
     ),
     wrong="""
 plugins: [obstacles]
@@ -185,6 +271,22 @@ _LAUNCH_ARGUMENT = Rule(
     why=(
         "An include accepts unknown arguments without a message. The included file uses its "
         "default, such as another world or no simulated time."
+    ),
+    symptoms=(
+        Symptom(
+            "launch-argument-missing",
+            pattern=(
+                r"Included launch description missing required argument "
+                r"'(?P<argument>[^']{1,200}+)\'"
+            ),
+            source="ros2/launch 02595baf, launch/launch/actions/include_launch_description.py:174",
+            sentence="An include does not pass an argument that has no default.",
+            example=(
+                "Included launch description missing required argument 'world' (description: 'no "
+                "description given'), given: []"
+            ),
+            within=("argument",),
+        ),
     ),
     wrong="""
 IncludeLaunchDescription(
@@ -259,6 +361,34 @@ _NODE_STARTED = Rule(
         "The lifecycle manager waits for the services of a node that nothing starts. It "
         "activates no node, so Nav2 does not start."
     ),
+    symptoms=(
+        Symptom(
+            "bringup-failed",
+            pattern=r"Failed to change state for node: (?P<node>[\w/]{1,200}+)",
+            source=(
+                "ros-navigation/navigation2 a3a97043e, nav2_lifecycle_manager/src/"
+                "lifecycle_manager.cpp:306"
+            ),
+            sentence="A server of Nav2 could not be started, and has said why before.",
+            example="Failed to change state for node: planner_server",
+            within=("node",),
+            follows=True,
+        ),
+        Symptom(
+            "state-awaited",
+            pattern=(
+                r"(?:Waiting for service )?(?P<node>[\w-]{1,200}+)/get_state(?: service client: "
+                r"waiting for service|\.\.\.)"
+            ),
+            source=(
+                "ros-navigation/navigation2 a3a97043e, nav2_ros_common/include/nav2_ros_common/"
+                "service_client.hpp:98"
+            ),
+            sentence="A lifecycle manager waits for a node that is not started.",
+            example="planner_server/get_state service client: waiting for service to appear...",
+            within=("node",),
+        ),
+    ),
     wrong="""
 Node(package='nav2_map_server', executable='map_server', name='map_server'),
 Node(
@@ -327,7 +457,7 @@ class Definition(NamedTuple):
     robot: str = ""
 
 
-class Use(NamedTuple):
+class Use(Named):
     """A name that a file uses, and what the file calls it.
 
     Where it is `optional`, only a similar name is wrong. It does not stand for one that is `taken`,
@@ -344,7 +474,7 @@ class Use(NamedTuple):
     robots: ComparedRobots | None = None  # None for all
 
 
-class Open(NamedTuple):
+class Open(Named):
     """That names of a kind may be defined elsewhere.
 
     They may be defined by what is not in the workspace, or, for a reason, by what is not
@@ -356,14 +486,14 @@ class Open(NamedTuple):
     reason: str = ""
 
 
-class Pattern(NamedTuple):
+class Pattern(Named):
     """That names of a kind may be defined that are not known; * stands for a part of them."""
 
     kind: DefinedKind
     pattern: str
 
 
-class Correction(NamedTuple):
+class Correction(Named):
     """Another name in a file.
 
     The old one is at a place, behind it in the same element, or the key before it.
@@ -374,7 +504,7 @@ class Correction(NamedTuple):
     new: str
 
 
-class Mismatch(NamedTuple):
+class Mismatch(Named):
     """Something that does not agree.
 
     It is a warning, and fails no criterion, unless it certainly fails at run time.
@@ -393,7 +523,30 @@ class Mismatch(NamedTuple):
     cause: str = ""  # what it has in common with others that one mistake makes
     lacked: str = ""  # the package that package.xml lacks, and is to be added
     tag: str = "exec_depend"  # with which package.xml is to declare that package
-    names: tuple[str, ...] = ()  # by which a message of a log may mean it
+    names: Strings = ()  # by which a message of a log may mean it
+    offered: tuple[Correction, ...] = ()  # in an editor; hints and grades have only corrections
+
+    def offering(self, old: str, new: str | None, at: Location | None = None) -> "Mismatch":
+        """Return it with an edit that its message names; without an old text it is an element.
+
+        An element is added to the package.xml at the place. Nothing is offered without a new text.
+        """
+        correction = Correction(at or self.location, old, new or "")
+        return self._replace(offered=(correction,)) if new else self
+
+    def correcting(
+        self, name: str, meant: str | None, defined: Location | None = None
+    ) -> "Mismatch":
+        """Return it with what makes it agree: `corrections` of a name at its place."""
+        return self._replace(corrections=corrections(name, self.location, meant, defined))
+
+    def meaning(self, name: str, meant: str | None, defined: Location | None = None) -> "Mismatch":
+        """Return it with the name that is meant, if that is known, which its message asks for."""
+        if meant is None:
+            return self
+        place = f" ({defined.file_and_line})" if defined else ""
+        asking = self._replace(message=f"{self.message}; did you mean {quoted(meant)}{place}?")
+        return asking.correcting(name, meant, defined)
 
     @property
     def family(self) -> AnyFamily:
@@ -406,21 +559,21 @@ def warning(rule: Rule, message: str, at: Location, related: Location | None = N
     return Mismatch(rule, message, at, related, is_certain=False)
 
 
-class Compared(NamedTuple):
+class Compared(Named):
     """That something of a family is there to be compared; of a file its path below the prefix."""
 
     family: AnyFamily
     name: str = ""
 
 
-class Undecided(NamedTuple):
+class Undecided(Named):
     """That the names of a family are not compared, and why."""
 
     family: AnyFamily
     reason: str
 
 
-class Counted(NamedTuple):
+class Counted(Named):
     """How many names of a family are compared with a counterpart, and why not all are known."""
 
     family: AnyFamily
@@ -444,7 +597,7 @@ Facts = Iterator[Fact]
 Mismatches = Iterator[Mismatch]
 
 
-class Agreement(NamedTuple):
+class Agreement(Named):
     """What does not agree in a workspace, and for each family why something is not known."""
 
     mismatches: tuple[Mismatch, ...]
@@ -479,7 +632,7 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
 
     The work of comparing names is charged.
     """
-    every = [*facts]
+    every = list(facts)
     names = _DefinedNames(every)
     mismatches = [fact for fact in every if isinstance(fact, Mismatch)]
     counts = {fact.family: fact for fact in every if isinstance(fact, Counted)}
@@ -500,23 +653,21 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
     return Agreement(_in_order(mismatches), undecided, frozenset(compared), files, counts)
 
 
-def _undefined(
-    names: "_DefinedNames", use: Use, charge: Callable[[int], None]
-) -> Iterator[Mismatch]:
+def _undefined(names: "_DefinedNames", use: Use, charge: Callable[[int], None]) -> Mismatches:
     """Yield that a name is not defined, unless what is not known may define it."""
     known = names.like(use)
     if use.taken:
         known = {name: at for name, at in known.items() if name not in use.taken}
     charge(cost_of_guess(len(known)))
     mismatch = _mismatch(use, known, is_open=names.are_open(use))
-    if mismatch is not None:
+    if mismatch:
         yield mismatch
 
 
 def _compared(facts: Iterable[Fact]) -> tuple[set[AnyFamily], frozenset[str]]:
     """Return of which families something is compared, and the files that are looked for."""
-    families: set[AnyFamily] = set()
-    files: set[str] = set()
+    families = set()
+    files = set()
     for fact in facts:
         if isinstance(fact, Compared | Mismatch):
             families.add(fact.family)
@@ -529,7 +680,7 @@ class _DefinedNames:
     """The names that files define, and which others may be defined."""
 
     def __init__(self, facts: Iterable[Fact]) -> None:
-        self.patterns: list[Pattern] = []
+        self.patterns = []
         # By kind and owner; each name with the robots that have it, and the place in each.
         self._known: dict[tuple[DefinedKind, str], dict[str, dict[str, Location]]] = {}
         self._reasons: dict[tuple[DefinedKind, str], str] = {}  # why names are open
@@ -549,7 +700,7 @@ class _DefinedNames:
         similar: dict[str, Location] = {}
         for name, places in self._known.get((use.kind, use.owner), {}).items():
             for robot, place in places.items():
-                if use.robots is None or not robot or robot in use.robots.paths:
+                if not use.robots or not robot or robot in use.robots.paths:
                     similar.setdefault(name, place)
         return similar
 
@@ -560,7 +711,7 @@ class _DefinedNames:
     def holds(self, use: Use) -> bool:
         """Return whether a name is defined, by a robot that counts or by none."""
         places = self._known.get((use.kind, use.owner), {}).get(use.name, {})
-        if use.robots is None or not use.robots.are_started:
+        if not use.robots or not use.robots.are_started:
             return bool(places)
         return "" in places or not use.robots.paths.isdisjoint(places)
 
@@ -587,6 +738,11 @@ def _in_order(mismatches: Iterable[Mismatch]) -> tuple[Mismatch, ...]:
     return tuple(chain.from_iterable(by_place[place] for place in sorted(by_place)))
 
 
+def charge_guess(workspace: Workspace, known: Sized) -> None:
+    """Charge the work of comparing a name with known ones. Raises NotDecided."""
+    workspace.charge(cost_of_guess(len(known)))
+
+
 def cost_of_guess(known: int) -> int:
     """Return the parts of comparing a name with as many known ones.
 
@@ -597,7 +753,7 @@ def cost_of_guess(known: int) -> int:
 
 def _undecided(facts: Sequence[Fact], counts: Iterable[Counted]) -> dict[AnyFamily, str]:
     """Return the families whose names are not compared, and why: the first reason of each."""
-    undecided: dict[AnyFamily, str] = {
+    undecided = {
         fact.family: fact.reason for fact in reversed(facts) if isinstance(fact, Undecided)
     }
     for count in counts:
@@ -613,15 +769,12 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
         meant = closest(use.name, known, is_clear=True)
     if meant is None and (is_open or use.optional):
         return None
-    where = use.robots.words if use.robots is not None else ""
+    where = use.robots.words if use.robots else ""
     message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{where}"
-    related = None
-    if meant is not None:
-        related = known[meant]
-        message = f"{message}; did you mean {quoted(meant)} ({related.file_and_line})?"
-    either = corrections(use.name, use.location, meant, related)
+    related = known[meant] if meant is not None else None
     rule = DEFINED[use.kind]
-    return Mismatch(rule, message, use.location, related, not is_open, either, word=use.name)
+    wrong = Mismatch(rule, message, use.location, related, not is_open, word=use.name)
+    return wrong.meaning(use.name, meant, related)
 
 
 def among(fact: Fact, compared: ComparedRobots) -> Fact:
@@ -648,5 +801,5 @@ def corrections(
         return ()
     return (
         Correction(at, name, meant),
-        *([Correction(defined, meant, name)] if defined is not None else []),
+        *([Correction(defined, meant, name)] if defined else []),
     )

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator, Mapping
 
-from grader.base.source import Location
+from grader.base.grouping import Strings
+from grader.base.names import last_part
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import keys_of_sections
@@ -27,10 +28,10 @@ def namespace_facts(workspace: Workspace) -> Facts:
     rcl compares the full names, so the node gets none of its parameters.
     """
     for path, nodes in workspace.parameters.files.items():
-        tree = workspace.installed.yaml.get(path)
-        if isinstance(tree, YamlNode):
+        tree = workspace.installed.find_tree(path)
+        if tree:
             keys = keys_of_sections(tree)
-            said: set[Location] = set()  # of several nodes that do not get a section, the first
+            said = set()  # of several nodes that do not get a section, the first
             for node in nodes:
                 workspace.charge(1 + len(keys))
                 for fact in _other_namespace(workspace, tree, node, keys):
@@ -76,13 +77,13 @@ Node(
 
 
 def _other_namespace(
-    workspace: Workspace, tree: YamlNode, node: StartedNode, keys: Mapping[str, tuple[str, ...]]
+    workspace: Workspace, tree: YamlNode, node: StartedNode, keys: Mapping[str, Strings]
 ) -> Iterator[Compared | Mismatch]:
     name = workspace.code.find_name(node)
     if not name or node.namespace is None or package_row(node.package).holds_nodes:
         return
     full = node.full_name(name)
-    same = [key for key in keys if key.rpartition("/")[2] == full.rpartition("/")[2]]
+    same = [key for key in keys if last_part(key) == last_part(full)]
     if not same:
         return
     yield Compared("parameters")
@@ -94,4 +95,5 @@ def _other_namespace(
         f"{same[0]}: write {quoted('/**/' + full.rpartition('/')[2])}, which matches any namespace"
     )
     at = tree.key_location(*keys[same[0]])
-    yield Mismatch(_PARAMETER_NAMESPACE, message, at, node.location, is_certain=node.when is True)
+    wrong = Mismatch(_PARAMETER_NAMESPACE, message, at, node.location, is_certain=node.when is True)
+    yield wrong.offering(written, f"/**/{full.rpartition('/')[2]}")

@@ -1,8 +1,7 @@
 """Names of Ignition in robots, models and worlds of a workspace that uses Gazebo."""
 
-from grader.base.source import Location
 from grader.base.text import counted
-from grader.workspace.graph.gazebo_topics import roots
+from grader.workspace.graph.gazebo_topics import elements_in
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
@@ -48,16 +47,15 @@ def older_gazebo_facts(workspace: Workspace) -> Facts:
     and, where only releases are stated whose packages are for it, those of its packages in
     package.xml or of programs that launch files start: with Humble, they are for Fortress.
     """
-    plugins: list[tuple[tuple[str, str], Location]] = []
+    plugins = []
     is_newer = _uses_packages(workspace)
-    for root, place in roots(workspace):
-        for plugin in root.iter("plugin"):
-            workspace.charge(1)
-            names = plugin.get("name", ""), plugin.get("filename", "")
-            if any(name.startswith(_NEWER) for name in names):
-                is_newer = True
-            if any(name.startswith(_OLDER) for name in names):
-                plugins.append((names, place(plugin)))
+    for plugin, place in elements_in(workspace, "plugin"):
+        workspace.charge(1)
+        names = plugin.get("name", ""), plugin.get("filename", "")
+        if any(name.startswith(_NEWER) for name in names):
+            is_newer = True
+        if any(name.startswith(_OLDER) for name in names):
+            plugins.append((names, place(plugin)))
     if not is_newer or not plugins:
         return
     yield Compared("words")
@@ -68,13 +66,13 @@ def older_gazebo_facts(workspace: Workspace) -> Facts:
     others = len({place.path for _, place in plugins}) - 1
     if others:
         message += f"; {counted(others, 'other file has', 'other files have')} such names, too"
-    yield warning(_OLDER_GAZEBO, message, at)
+    yield warning(_OLDER_GAZEBO, message, at).offering(older, newer)
 
 
 def _uses_packages(workspace: Workspace) -> bool:
     """Return whether packages of Gazebo are used, with releases where they are not for Ignition."""
     if not workspace.releases or not _FOR_IGNITION.isdisjoint(workspace.releases):
         return False
-    if any(node.package in _PACKAGES for _, node in workspace.launches.nodes):
+    if any(node.package in _PACKAGES for node in workspace.launches.nodes):
         return True
     return any(package.depends_on(name) for package in workspace.packages for name in _PACKAGES)

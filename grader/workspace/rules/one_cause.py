@@ -53,7 +53,8 @@ def without_said_patterns(problems: Sequence[Problem]) -> list[Problem]:
 def _repeated_assumptions(problems: Sequence[Problem]) -> list[Problem]:
     """Return what is assumed of a line with another problem, or of a wrong closing tag."""
     said = {_find_line(problem) for problem in problems if problem.kind != RECOVERED}
-    repeated, others = list[Problem](), list[Problem]()
+    repeated = list[Problem]()
+    others = list[Problem]()
     for problem in problems:
         if problem.kind == RECOVERED:
             (repeated if _find_line(problem) in said else others).append(problem)

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
-from typing import NamedTuple
 
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source
 from grader.base.text import counted, cut, enumerated, quoted
 from grader.ros.known.releases import RELEASES, Release
@@ -26,23 +26,23 @@ from grader.workspace.rules.rule_table import (
 )
 
 # A folder of a user, or a workspace of root.
-_HOME = re.compile(
+_HOME = on_use(
     r"(?<![\w$}/.:])(?:file://)?"
     r"(/(?:(?:home|Users)/[\w.-]+|root(?=/[\w./-]*/(?:src|install)/))/[^\s\"'<>,;:)}\]]*)"
 )
 # A folder of a workspace: /ros2_ws/src/rover/map.yaml.
-_WORKSPACE = re.compile(r"ws/(?:src|install)/[^\s\"'<>,;:)}\]]*+")
-_BEFORE = re.compile(r"(?<![\w~$}.:/-])((?:/[\w.-]*+)+)\Z")
-_PLACEHOLDERS = re.compile(r"^/(?:home|Users)/(?:user|username|you|your[\w-]*|<.*)/")
+_WORKSPACE = on_use(r"ws/(?:src|install)/[^\s\"'<>,;:)}\]]*+")
+_BEFORE = on_use(r"(?<![\w~$}.:/-])((?:/[\w.-]*+)+)\Z")
+_PLACEHOLDERS = on_use(r"^/(?:home|Users)/(?:user|username|you|your[\w-]*|<.*)/")
 # A file in the folder of a release: /opt/ros/humble/share/nav2_bt_navigator/tree.xml.
-_OF_RELEASE = re.compile(
+_OF_RELEASE = on_use(
     rf"(?<![\w/.-])/opt/ros/(?P<release>{'|'.join(RELEASES)})/share/[^\s\"'<>,;:)}}\]]*+"
 )
 _TEXTS = (
     *(".yaml", ".yml", ".urdf", ".xacro", ".sdf", ".world", ".json", ".lua"),
     *(".py", ".cpp", ".hpp", ".cc", ".h"),
 )
-_ENVIRONMENT = re.compile(
+_ENVIRONMENT = on_use(
     r"\bos\.environ\[\s*[\"'](?P<python>\w+)[\"']\s*\](?!\s*=[^=])"
     r"|\bEnvironmentVariable\(\s*(?:name\s*=\s*)?[\"'](?P<launch>\w+)[\"']\s*,?\s*\)"
     r"|\$\(env (?P<xml>\w+)\s*\)"
@@ -64,10 +64,9 @@ class _TopicNames:
     @cached_property
     def _names(self) -> set[str]:
         names: set[str | None] = set()
-        for code in self._workspace.code.by_package.values():
-            for facts in code.nodes:
-                names.update(endpoint.name for endpoint in facts.endpoints)
-        for _, node in self._workspace.launches.nodes:
+        for facts in self._workspace.code.nodes:
+            names.update(endpoint.name for endpoint in facts.endpoints)
+        for node in self._workspace.launches.nodes:
             names.add(node.namespace)
             for rule in node.remaps or ():
                 names.update(rule)
@@ -85,7 +84,7 @@ def machine_facts(workspace: Workspace) -> Facts:
     Those of a launch file at which it reads files are problems of this file, and not yielded.
     """
     topics = _TopicNames(workspace)
-    launches: dict[str, Launch] = {}
+    launches = {}
     for package, path, launch in workspace.launches.files:
         launches[package.path(path)] = launch
         yield from _home_values(launch, topics)
@@ -102,24 +101,17 @@ def machine_facts(workspace: Workspace) -> Facts:
     yield from _variables(workspace)
 
 
-class _MachinePath(NamedTuple):
-    """A path of one machine in a text, and where it is."""
-
-    text: str
-    offset: int
-
-
-def _machine_paths(text: str) -> Iterator[_MachinePath]:
-    """Yield the paths in home folders, and those in workspaces at the root of a machine."""
-    ends = set[int]()
+def _machine_paths(text: str) -> Iterator[tuple[str, int]]:
+    """Yield the paths in home folders, and in workspaces at the root of a machine; with offsets."""
+    ends = set()
     for path in _HOME.finditer(text):
         ends.add(path.end())
-        yield _MachinePath(path[1], path.start(1))
+        yield path[1], path.start(1)
     for path in _WORKSPACE.finditer(text):
         start = max(0, path.start() - _MAX_SHOWN)
         before = _BEFORE.search(text[start : path.start()])
-        if before is not None and path.end() not in ends:
-            yield _MachinePath(f"{before[1]}{path[0]}", start + before.start(1))
+        if before and path.end() not in ends:
+            yield f"{before[1]}{path[0]}", start + before.start(1)
 
 
 _HOME_PATH = Rule(
@@ -144,8 +136,11 @@ def _home_values(launch: Launch, topics: _TopicNames) -> Mismatches:
         for given in node.parameters or ():
             for value in given.values.values():
                 text = value.value if isinstance(value.value, str) else ""
-                paths = [path for path in _machine_paths(text) if path.offset == 0]
-                is_home = bool(paths) and not _PLACEHOLDERS.match(text) and text not in topics
+                is_home = (
+                    any(offset == 0 for _, offset in _machine_paths(text))
+                    and not _PLACEHOLDERS.match(text)
+                    and text not in topics
+                )
                 if is_home and value.location.path == launch.source.path:
                     if value.location not in said:
                         shown = quoted(cut(text, _MAX_SHOWN))
@@ -191,7 +186,7 @@ def _release_paths(source: Source, releases: Sequence[Release]) -> Mismatches:
         return
     for path in _OF_RELEASE.finditer(source.text) if releases else ():
         if path["release"] not in allowed and _is_code(source, path.start()):
-            stated = enumerated([*releases], word="or")
+            stated = enumerated(releases, word="or")
             message = (
                 f"the path {quoted(cut(path[0], _MAX_SHOWN))} is of {path['release']}, the "
                 f"workspace is for {stated}: find the package in place of it"
@@ -204,10 +199,15 @@ def _is_code(source: Source, offset: int) -> bool:
     """Return whether a place is in no comment and no docstring."""
     if _is_in_comment(source.text, offset):
         return False
+    return source.at(offset).line not in _lines_of_docstrings(source)
+
+
+def _lines_of_docstrings(source: Source) -> Collection[int]:
+    """Return the lines that docstrings have in a file; none if it is not Python."""
     if not source.path.endswith(".py"):
-        return True
+        return ()
     code = parse(source.text.encode("utf-8", "replace"), source.path)
-    return not isinstance(code, Code) or source.at(offset).line not in lines_of_docstrings(code)
+    return lines_of_docstrings(code) if isinstance(code, Code) else ()
 
 
 def _home_paths(source: Source, said: Collection[str], topics: _TopicNames) -> Mismatches:
@@ -216,21 +216,20 @@ def _home_paths(source: Source, said: Collection[str], topics: _TopicNames) -> M
     Those that are part of what is said otherwise do not count.
     """
     paths = []
-    for path in _machine_paths(source.text):
-        is_said = _PLACEHOLDERS.match(path.text) or any(path.text in text for text in said)
-        is_comment = _is_in_comment(source.text, path.offset)
-        if not is_said and not is_comment and path.text not in topics:
-            paths.append(path)
-    if paths and source.path.endswith(".py"):
-        code = parse(source.text.encode("utf-8", "replace"), source.path)
-        lines = lines_of_docstrings(code) if isinstance(code, Code) else ()
-        paths = [path for path in paths if source.at(path.offset).line not in lines]
+    for path, offset in _machine_paths(source.text):
+        is_said = _PLACEHOLDERS.match(path) or any(path in text for text in said)
+        is_comment = _is_in_comment(source.text, offset)
+        if not is_said and not is_comment and path not in topics:
+            paths.append((offset, path))
     if paths:
-        first = min(paths, key=lambda path: path.offset)
-        message = f"the path {quoted(cut(first.text, _MAX_SHOWN))} is of one machine"
+        lines = _lines_of_docstrings(source)
+        paths = [(at, path) for at, path in paths if source.at(at).line not in lines]
+    if paths:
+        offset, first = min(paths)
+        message = f"the path {quoted(cut(first, _MAX_SHOWN))} is of one machine"
         if len(paths) > 1:
             message += f"; the file has {len(paths)} such paths"
-        yield warning(_HOME_PATH, message, source.at(first.offset))
+        yield warning(_HOME_PATH, message, source.at(offset))
 
 
 def _is_in_comment(text: str, offset: int) -> bool:
@@ -250,11 +249,19 @@ _ENVIRONMENT_VARIABLE = Rule(
     ),
     symptoms=(
         Symptom(
+            "environment-variable",
             pattern=r"environment variable '(?P<variable>\w{1,200}+)' does not exist",
-            program="launch",
             source="ros2/launch 02595baf, launch/launch/substitutions/environment_variable.py:101",
             sentence="A launch file reads an environment variable that is not set.",
             example="environment variable 'TURTLEBOT3_MODEL' does not exist",
+            within=("variable",),
+        ),
+        Symptom(
+            "key-error",
+            pattern=r"KeyError: '(?P<variable>\w{1,200}+)'",
+            source="python/cpython v3.11.7, Lib/os.py:679",
+            sentence="An environment variable, or a key of a dictionary, is missing.",
+            example="KeyError: 'ROBOT_MODEL'",
             within=("variable",),
         ),
     ),
@@ -287,7 +294,7 @@ def _variables(workspace: Workspace) -> Mismatches:
 
 def _needed_variables(source: Source) -> Iterator[tuple[str, Location]]:
     """Yield the environment variables without which a launch file ends, each once."""
-    seen: set[str] = set()
+    seen = set()
     for match in _ENVIRONMENT.finditer(source.text):
         name = match["python"] or match["launch"] or match["xml"]
         is_known = name in ros_machine().environment or name in seen

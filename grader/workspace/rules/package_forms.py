@@ -2,9 +2,11 @@
 
 import re
 
-from grader.base.source import Source
+from grader.base.patterns import on_use
+from grader.base.source import Location, Source
 from grader.base.text import cut, enumerated, quoted
 from grader.ros.installation.manifest import DeclaredDependency, Manifest
+from grader.ros.package.package import Package
 from grader.ros.package.setup_version import versions_in
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
@@ -13,15 +15,12 @@ from grader.workspace.rules.names import (
     Mismatches,
     warning,
 )
-from grader.workspace.rules.rule_table import (
-    FORM,
-    NO_BUILD,
-    Rule,
-)
+from grader.workspace.rules.rule_table import FORM, NO_BUILD, Rule, Symptom
 
 # By Package.validate() of catkin_pkg, which warns of others.
-_NAME = re.compile(r"[a-z][a-z0-9_-]*")
-_DASHED = re.compile(r"^(script-dir|install-scripts)[ \t]*+[=:]", re.MULTILINE)
+_NAME = on_use(r"[a-z][a-z0-9_-]*")
+_INTERFACE = on_use(r"(?:msg|srv|action)/[A-Z]\w*+\.(?:msg|srv|action)")
+_DASHED = on_use(r"^(script-dir|install-scripts)[ \t]*+[=:]", re.MULTILINE)
 _MAX_SHOWN = 40  # characters of a text
 
 
@@ -66,23 +65,86 @@ def package_form_facts(workspace: Workspace) -> Facts:
     """
     for package in workspace.packages:
         manifest = package.manifest
-        if manifest is None or manifest.refusals or package.is_of_ros1:
+        if not manifest or manifest.refusals or package.is_of_ros1:
             continue
         yield Compared("builds")
         yield from _repeated_dependencies(manifest)
         yield from _loose_texts(manifest)
         yield from _capital_names(manifest)
         setup = package.installation
-        if setup is not None and not setup.is_cmake:
+        if setup and not setup.is_cmake:
             yield from _other_versions(manifest, setup.source)
             if not manifest.has_build_type:
                 message = (
                     "package.xml has no build type, so colcon does not build the package with "
                     "setup.py: write <export><build_type>ament_python</build_type></export>"
                 )
-                yield warning(_PYTHON_BUILD_TYPE, message, manifest.name_location)
+                wrong = warning(_PYTHON_BUILD_TYPE, message, manifest.name_location)
+                yield wrong.offering("", "<export><build_type>ament_python</build_type></export>")
+            yield from _interfaces_in_python(package)
             for source in workspace.texts.read_sources(package, ("setup.cfg",)):
                 yield from _dashed_keys(source)
+
+
+_INTERFACES_GENERATED = Rule(
+    "interfaces-generated",
+    "builds",
+    NO_BUILD,
+    "Messages, services and actions are in a package that CMake builds.",
+    why=(
+        "Only rosidl_generate_interfaces() of CMake generates them. An import of the message "
+        "then stops with ModuleNotFoundError."
+    ),
+    wrong="""
+<package format="3">
+  <name>rover</name>
+  <version>1.0.0</version>
+  <description>A rover.</description>
+  <maintainer email="a@example.com">A</maintainer>
+  <license>MIT</license>
+  <export><build_type>ament_python</build_type></export>
+</package>
+""",
+    right="""
+<package format="3">
+  <name>rover</name>
+  <version>1.0.0</version>
+  <description>A rover.</description>
+  <maintainer email="a@example.com">A</maintainer>
+  <license>MIT</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <buildtool_depend>rosidl_default_generators</buildtool_depend>
+  <exec_depend>rosidl_default_runtime</exec_depend>
+  <member_of_group>rosidl_interface_packages</member_of_group>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+""",
+    frame="own/package.xml",
+    beside={
+        "../rover/msg/Speed.msg": "float32 speed",
+        "../rover/CMakeLists.txt": """
+cmake_minimum_required(VERSION 3.8)
+project(rover)
+find_package(ament_cmake REQUIRED)
+find_package(rosidl_default_generators REQUIRED)
+rosidl_generate_interfaces(${PROJECT_NAME} "msg/Speed.msg")
+install(DIRECTORY launch urdf DESTINATION share/${PROJECT_NAME})
+ament_package()
+""",
+    },
+    at="rover/msg/Speed.msg",
+)
+
+
+def _interfaces_in_python(package: Package) -> Mismatches:
+    """Yield the first interface in a package that setup.py builds, which generates none."""
+    paths = [path for path in package.tree.files if _INTERFACE.fullmatch(path)]
+    if paths:
+        message = (
+            "setup.py does not generate messages, services or actions: move them to a package with "
+            "CMakeLists.txt and rosidl_generate_interfaces()"
+        )
+        yield warning(_INTERFACES_GENERATED, message, Location(package.path(min(paths)), 1, 1))
 
 
 _DEPENDENCY_ONCE = Rule(
@@ -109,7 +171,7 @@ _DEPENDENCY_ONCE = Rule(
 
 def _repeated_dependencies(manifest: Manifest) -> Mismatches:
     """Yield the dependencies that a package.xml declares again, under no condition."""
-    repeated: list[DeclaredDependency] = []
+    repeated = []
     first: dict[tuple[str, str], DeclaredDependency] = {}
     for declared in manifest.declared:
         key = (declared.name, declared.tag)
@@ -117,9 +179,8 @@ def _repeated_dependencies(manifest: Manifest) -> Mismatches:
             repeated.append(declared)
         first.setdefault(key, declared)
     if repeated:
-        names = enumerated([*dict.fromkeys(quoted(declared.name) for declared in repeated)])
-        message = f"package.xml declares {names} twice"
-        yield warning(_DEPENDENCY_ONCE, message, repeated[0].location)
+        names = enumerated(dict.fromkeys(quoted(declared.name) for declared in repeated))
+        yield warning(_DEPENDENCY_ONCE, f"package.xml declares {names} twice", repeated[0].location)
 
 
 _MANIFEST_TEXT = Rule(
@@ -186,7 +247,7 @@ _PACKAGE_NAME = Rule(
 
 def _capital_names(manifest: Manifest) -> Mismatches:
     """Yield a name of which catkin_pkg warns."""
-    if manifest.name is not None and _NAME.fullmatch(manifest.name) is None:
+    if manifest.name is not None and not _NAME.fullmatch(manifest.name):
         message = (
             f"the name of the package {manifest.name!r} should begin with a small letter, and have "
             "small letters, digits and underscores only"
@@ -239,10 +300,10 @@ setup(
 
 def _other_versions(manifest: Manifest, setup: Source) -> Mismatches:
     """Yield that setup() in setup.py is given another version than package.xml has."""
-    for version in versions_in(setup) if manifest.version else ():
-        if version.text != manifest.version:
-            message = f"setup.py has the version {version.text}, package.xml {manifest.version}"
-            yield warning(_PACKAGE_VERSION, message, version.location, manifest.name_location)
+    for version, at in versions_in(setup) if manifest.version else ():
+        if version != manifest.version:
+            message = f"setup.py has the version {version}, package.xml {manifest.version}"
+            yield warning(_PACKAGE_VERSION, message, at, manifest.name_location)
 
 
 _SETUP_KEY = Rule(
@@ -253,6 +314,19 @@ _SETUP_KEY = Rule(
     why=(
         "Newer setuptools warn at each build that they will not support keys with dashes. "
         "Without script_dir, ros2 run finds no program of the package."
+    ),
+    symptoms=(
+        Symptom(
+            "dash-separated",
+            pattern=r"Usage of dash-separated '(?P<key>[\w-]{1,100}+)' will not be supported",
+            source="pypa/setuptools 7d53128, setuptools/dist.py:635",
+            sentence="setup.cfg has a key with a dash; nothing fails yet.",
+            example=(
+                "UserWarning: Usage of dash-separated 'script-dir' will not be supported in "
+                "future versions."
+            ),
+            within=("key",),
+        ),
     ),
     wrong="""
 [develop]
@@ -273,7 +347,8 @@ install_scripts=$base/lib/rover
 def _dashed_keys(source: Source) -> Mismatches:
     """Yield the first key with a dash."""
     dashed = _DASHED.search(source.text)
-    if dashed is not None:
+    if dashed:
         meant = dashed[1].replace("-", "_")
         message = f"setuptools deprecates the key {dashed[1]}: write {meant}"
-        yield warning(_SETUP_KEY, message, source.at(dashed.start(1)))
+        wrong = warning(_SETUP_KEY, message, source.at(dashed.start(1)))
+        yield wrong.offering(dashed[1], meant)

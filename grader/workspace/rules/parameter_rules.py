@@ -7,9 +7,12 @@ import operator
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cache, lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
+from grader.base.grouping import Strings, StringsByName
 from grader.base.names import MAX_GUESSES, are_of_one_side, closest, is_misspelling, near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.known.parameter_rows import (
@@ -25,7 +28,6 @@ from grader.ros.python.values import Unknown
 from grader.workspace.rules.names import (
     Mismatch,
     Mismatches,
-    corrections,
     warning,
 )
 from grader.workspace.rules.rule_table import (
@@ -34,10 +36,16 @@ from grader.workspace.rules.rule_table import (
     NO_SUCH_PARAMETER,
     OTHER_RELEASE,
     Rule,
+    Symptom,
+)
+from grader.workspace.rules.shared_symptoms import (
+    TYPE_EXPECTED,
 )
 
+ParameterValues = Mapping[str, ParameterValue]  # by their names
+
 _MAX_TABLES = 100  # of plugins in a node
-_PLAIN = re.compile(r"[\w ./:+,-]*")
+_PLAIN = on_use(r"[\w ./:+,-]*")
 _CLASS_KEYS = ("plugin", "type")  # of a section of parameters of a plugin
 _MANY_UNKNOWN = 5  # parameters, from which on they may be those of another program
 _MAX_LIBRARIES = 3  # that a message names
@@ -62,12 +70,12 @@ _DECLARED = {
 _NOT_KNOWN = Unknown("its default is not known", START)
 
 
-class GivenNode(NamedTuple):
+class GivenNode(Named):
     """The parameters that a node, a controller or a plugin gets."""
 
     node: str  # whose rows count
     said: str  # what messages call it
-    values: Mapping[str, ParameterValue]
+    values: ParameterValues
     # Where a missing parameter is said; None where other files may give the node more.
     at: Location | None
     # The places of values that other nodes get too: they need not be parameters of this one.
@@ -79,12 +87,12 @@ class GivenNode(NamedTuple):
         return name.removeprefix(self.prefix)
 
 
-class _RowFinding(NamedTuple):
+class _RowFinding(Named):
     name: str  # of the parameter
     mismatch: Mismatch
 
 
-class _RowTable(NamedTuple):
+class _RowTable(Named):
     """The rows of a node or of one of its plugins, whose parameters begin with a prefix."""
 
     prefix: str
@@ -93,7 +101,7 @@ class _RowTable(NamedTuple):
     takes_any_type: bool
 
 
-class _RowIndex(NamedTuple):
+class _RowIndex(Named):
     """The rows of a release: all by their names, those of one name each, and those of many."""
 
     all_rows: Mapping[str, ParameterRow]
@@ -101,7 +109,7 @@ class _RowIndex(NamedTuple):
     patterns: Sequence[ParameterRow]
 
 
-class _ParameterMatch(NamedTuple):
+class _ParameterMatch(Named):
     """A row that has a name, in its table, with what stands in place of the angle brackets."""
 
     table: _RowTable
@@ -140,32 +148,22 @@ def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Mismatches:
     is right.
     """
     known = node_rows(given.node)
-    if known is None or not all(map(known.is_known_in, stated)):
+    if not known or not all(map(known.is_known_in, stated)):
         return
     read = [release for release in COVERED if known.is_known_in(release)]
     readers = {release: _NodeReader(given, release) for release in read}
     releases = [release for release in stated or read if known.is_in(release)]
     for finding in _findings_in_all([readers[release] for release in releases]):
         if finding.mismatch.rule is _PARAMETER_NAME:
-            yield _unknown_name(given, finding, readers, stated)
+            having = [release for release, reader in readers.items() if reader.has(finding.name)]
+            yield _of_other_release(given, finding, having, stated)
         else:
             yield finding.mismatch
 
 
-def _unknown_name(
-    given: GivenNode,
-    finding: _RowFinding,
-    readers: Mapping[Release, "_NodeReader"],
-    stated: Sequence[Release],
-) -> Mismatch:
-    """Return that a node has no parameter of a name, with the releases in which it has one."""
-    having = [release for release, reader in readers.items() if reader.has(finding.name)]
-    return _of_other_release(given, finding.name, finding.mismatch, having, stated)
-
-
 def _findings_in_all(readers: "Sequence[_NodeReader]") -> Iterator[_RowFinding]:
     """Yield what is wrong as each of some releases reads the parameters, as the first says it."""
-    by_release: list[dict[tuple[Rule, str], _RowFinding]] = []
+    by_release = []
     for reader in readers:
         by_release.append({(each.mismatch.rule, each.name): each for each in reader.findings()})
     for key, finding in by_release[0].items() if by_release else ():
@@ -221,19 +219,16 @@ drive_controller:
 
 
 def _of_other_release(
-    given: GivenNode,
-    name: str,
-    mismatch: Mismatch,
-    releases: Sequence[Release],
-    stated: Sequence[Release],
+    given: GivenNode, finding: _RowFinding, releases: Sequence[Release], stated: Sequence[Release]
 ) -> Mismatch:
     """Return that a name is one of other releases, if it is; else that it is not known."""
     if not releases or not stated:
-        return mismatch
-    at = given.values[name].location if name in given.values else mismatch.location
+        return finding.mismatch
+    name = finding.name
+    at = given.values[name].location if name in given.values else finding.mismatch.location
     for owner in (f"{given.node}/", f"{given.node.rpartition('/')[2]}/"):
         other = other_name("parameter", owner + name, stated, shown=owner)
-        if other is not None:
+        if other:
             return warning(_PARAMETER_RELEASE, other.message, at)
     if RELEASES.index(releases[-1]) < RELEASES.index(stated[0]):
         gone = RELEASES[RELEASES.index(releases[-1]) + 1]
@@ -251,6 +246,29 @@ PARAMETER_REQUIRED = Rule(
     why=(
         "The node prints an error and ends, so ros2 launch reports that the process has died. A"
         " lifecycle node fails to configure."
+    ),
+    symptoms=(
+        Symptom(
+            "no-critics",
+            pattern=r"No critics defined for (?P<plugin>[\w.-]{1,200}+)",
+            source=(
+                "ros-navigation/navigation2 a3a97043e, nav2_dwb_controller/dwb_core/src/"
+                "dwb_local_planner.cpp:164"
+            ),
+            sentence="The local planner gets no list of critics.",
+            example="No critics defined for FollowPath",
+            within=("plugin",),
+        ),
+        Symptom(
+            "parameter-not-set",
+            pattern=(
+                r"Statically typed parameter '(?P<parameter>[\w./-]{1,200}+)' must be initialized"
+            ),
+            source="ros2/rclcpp a0a2a067d, rclcpp/include/rclcpp/exceptions/exceptions.hpp:297",
+            sentence="A parameter without a default gets no value.",
+            example="Statically typed parameter 'joint_name' must be initialized.",
+            within=("parameter",),
+        ),
     ),
     wrong="Node(package='robot_state_publisher', executable='robot_state_publisher'),",
     right="""
@@ -272,6 +290,31 @@ PARAMETER_TYPE = Rule(
         "Nodes do not convert types: 2 is no double and '2.0' is no number. The declaration "
         "raises InvalidParameterTypeException, and the node ends at its start."
     ),
+    symptoms=(
+        Symptom(
+            "parameter-invalid-type",
+            pattern=r"parameter '(?P<parameter>[\w./-]{1,200}+)' has invalid type:",
+            source="ros2/rclcpp a0a2a067d, rclcpp/include/rclcpp/exceptions/exceptions.hpp:280",
+            sentence="A parameter has another type than its node declares.",
+            example="parameter 'rate' has invalid type: Wrong parameter type",
+            within=("parameter",),
+        ),
+        TYPE_EXPECTED,
+        Symptom(
+            "parameter-set",
+            pattern=(
+                r"Trying to set parameter '(?P<parameter>[\w.-]{1,200}+)' to .{0,200}?expecting "
+                r"type '"
+            ),
+            source="ros2/rclpy ba72a01, rclpy/rclpy/exceptions.py:116",
+            sentence="A parameter has another type than its node declares.",
+            example=(
+                "Trying to set parameter 'speed' to '1' of type 'INTEGER', expecting type "
+                "'Type.DOUBLE': speed"
+            ),
+            within=("parameter",),
+        ),
+    ),
     wrong="Node(package='rover', executable='joystick', parameters=[{'speed': 'fast'}]),",
     right="Node(package='rover', executable='joystick', parameters=[{'speed': 2.0}]),",
     beside={
@@ -287,6 +330,30 @@ _PARAMETER_VALUE = Rule(
     why=(
         "The node validates the value and refuses it with an error at its start. It stops, or "
         "the controller is not loaded."
+    ),
+    symptoms=(
+        Symptom(
+            "library-registered",
+            pattern=r"ID \[(?P<type>\w{1,200}+)\] already registered",
+            source="BehaviorTree/BehaviorTree.CPP 879522c, src/bt_factory.cpp:211",
+            sentence=(
+                "Two libraries have one node of behavior trees: the navigator loads its own "
+                "libraries itself."
+            ),
+            example="Original error: ID [ComputePathToPose] already registered",
+            within=("type",),
+        ),
+        Symptom(
+            "library-not-loaded",
+            pattern=r"Could not load library: (?:lib)?(?P<library>[\w.-]{1,200}?)(?:\.so)?: ",
+            source="BehaviorTree/BehaviorTree.CPP 879522c, src/shared_library_UNIX.cpp:26",
+            sentence="No installed package has the library.",
+            example=(
+                "Could not load library: libnav2_spin_action_bt_nod.so: cannot open shared "
+                "object file: No such file or directory"
+            ),
+            within=("library",),
+        ),
     ),
     wrong="""
 controller_manager:
@@ -321,7 +388,8 @@ class _NodeReader:
     """The parameters of a node, as one release reads them."""
 
     def __init__(self, given: GivenNode, release: Release) -> None:
-        self._given, self._release = given, release
+        self._given = given
+        self._release = release
         self._values = given.values
         self._tables: list[_RowTable] = []
         self._unread: list[str] = []  # prefixes of plugins that are not known
@@ -336,7 +404,7 @@ class _NodeReader:
     def default(self, name: str) -> Any:
         """Return the default of a parameter; Unknown where it is not known, None without one."""
         match = self._match(name)
-        if match is None:
+        if not match:
             return _NOT_KNOWN if self._may_have_more() else None
         row = match.row
         if row.is_required:
@@ -356,11 +424,11 @@ class _NodeReader:
 
     def findings(self) -> Iterator[_RowFinding]:
         """Yield what is wrong."""
-        unmatched: dict[str, ParameterValue] = {}
-        said: set[str] = set()  # the switches without which values have no effect
+        unmatched = {}
+        said = set()  # the switches without which values have no effect
         for name, value in self._values.items():
             match = self._match(name)
-            if match is None:
+            if not match:
                 unmatched[name] = value
                 continue
             switch = self._switch_off(match)
@@ -368,7 +436,7 @@ class _NodeReader:
             # write for a limit that is off.
             is_number = not isinstance(value.value, bool)
             is_default = is_number and value.value in (match.row.default, 0)
-            if switch is None:
+            if not switch:
                 yield from self._value_findings(name, value, match)
             elif switch.name not in said and not is_default:
                 said.add(switch.name)
@@ -378,7 +446,7 @@ class _NodeReader:
         if not is_another and self._is_complete:
             yield from self._name_findings(unmatched)
 
-    def _name_findings(self, unmatched: Mapping[str, ParameterValue]) -> Iterator[_RowFinding]:
+    def _name_findings(self, unmatched: ParameterValues) -> Iterator[_RowFinding]:
         """Yield the parameters that there are not, and those without which the node stops."""
         meant: dict[str, str] = {}  # the parameters that misspelt ones stand for
         unread: dict[str, _RowFinding] = {}
@@ -389,9 +457,9 @@ class _NodeReader:
             if near_name is not None:
                 meant.setdefault(near_name, name)
             finding = self._unknown(name, value, near_name)
-            if finding is not None:
+            if finding:
                 unread.setdefault(finding.name, finding)
-        if self._given.at is not None:
+        if self._given.at:
             yield from self._missing(meant, unread)
         yield from unread.values()
 
@@ -401,7 +469,7 @@ class _NodeReader:
             prefix, node = waiting.pop(0)
             known = node_rows(node)
             is_known = known is not None and known.is_known_in(self._release)
-            if known is None or not is_known or not known.is_in(self._release):
+            if not known or not is_known or not known.is_in(self._release):
                 self._unread.append(prefix)
                 continue
             index = _index(node, self._release)
@@ -428,11 +496,11 @@ class _NodeReader:
                 continue
             own_name = name[len(table.prefix) :]
             row = table.rows.by_name.get(own_name)
-            if row is not None:
+            if row:
                 return _ParameterMatch(table, row, ())
             for row in table.rows.patterns:
                 match = row.pattern.fullmatch(own_name)
-                if match is not None and self._are_listed(table, row, match.groups()):
+                if match and self._are_listed(table, row, match.groups()):
                     return _ParameterMatch(table, row, match.groups())
         return None
 
@@ -450,10 +518,10 @@ class _NodeReader:
         if name not in self._lists:
             row = table.rows.by_name.get(place)
             given = self._values.get(name)
-            if given is not None:
+            if given:
                 self._lists[name] = _entries(given.value)
             else:
-                self._lists[name] = _entries(row.default) or None if row is not None else None
+                self._lists[name] = _entries(row.default) or None if row else None
         return self._lists[name]
 
     def _is_under_unread(self, name: str) -> bool:
@@ -464,7 +532,7 @@ class _NodeReader:
         for count in range(1, len(parts)):
             for key in _CLASS_KEYS:
                 kind = ".".join((*parts[:count], key))
-                if kind in self._values and self._match(kind) is None:
+                if kind in self._values and not self._match(kind):
                     return True
         return False
 
@@ -478,13 +546,14 @@ class _NodeReader:
         for switch, wanted in row.unless.items():
             own_row = match.table.rows.all_rows.get(switch)
             switch_name = match.full_name(switch)
-            if own_row is None:
+            if not own_row:
                 continue
             if switch_name in self._values:
                 value = self._values[switch_name].value
                 place = f" ({self._values[switch_name].location.file_and_line})"
             elif is_whole:
-                value, place = own_row.default, ", by default"
+                value = own_row.default
+                place = ", by default"
             else:
                 continue
             if type(value) is type(wanted) and value != wanted:
@@ -499,21 +568,24 @@ class _NodeReader:
 
         A text that a launch file replaces may stand for the value.
         """
-        actual, declared = type_in_words(given.value), _DECLARED.get(match.row.type, "")
+        actual = type_in_words(given.value)
+        declared = _DECLARED.get(match.row.type, "")
         if not declared or not actual or actual == declared:
             return None
         message = (
             f"the parameter {self._given.shown(name)!r} is given {actual}{given.remark}; "
             f"{self._given.said} declares {declared}, and stops"
         )
-        return self._certain(PARAMETER_TYPE, name, message, given.location)
+        return self._certain(
+            PARAMETER_TYPE, name, message, given.location, names_of_types(declared, actual)
+        )
 
     def _value_findings(
         self, name: str, given: ParameterValue, match: _ParameterMatch
     ) -> Iterator[_RowFinding]:
         """Yield that a value has another type, or that its node does not accept it."""
         other_type = self._other_type(name, given, match)
-        if other_type is None:
+        if not other_type:
             yield from self._not_accepted(name, given, match)
         elif not match.table.takes_any_type and not _is_placeholder(given.value):
             yield other_type
@@ -532,29 +604,41 @@ class _NodeReader:
         wrong = self._wrong_library(name, match.row, given.value)
         if wrong:
             message = f"{self._given.said} {wrong}"
-            yield self._certain(_PARAMETER_VALUE, name, message, given.location)
+            nodes = tuple(map(_name_of_tree_node, _list_values(given.value)))
+            yield self._certain(_PARAMETER_VALUE, name, message, given.location, nodes)
 
     def _wrong_library(self, name: str, row: ParameterRow, value: Any) -> str:
-        """Return, in words, that a node stops at a library of plugins; empty if it does not."""
-        if not row.libraries or not isinstance(value, list):
-            return ""
-        listed = [str(item) for item in value]
+        """Return, in words, that a node stops at a library of plugins; empty if it does not.
+
+        A parameter that is no list names a class of them.
+        """
+        listed = _list_values(value) if row.libraries else []
         twice = [item for item in listed if item in row.libraries]
         if twice and row.loads_libraries:
             return (
                 f"loads {enumerated(twice, _MAX_LIBRARIES)} itself, and stops where {name} has "
                 "the same: list only other libraries"
             )
-        return self._missing_library(row, [item for item in listed if item not in row.libraries])
+        unknown = [item for item in listed if item not in row.libraries]
+        what = "stops", "library"
+        if isinstance(value, str):
+            what = "loads nothing", "class"
+        return self._missing_library(row, unknown, what)
 
-    def _missing_library(self, row: ParameterRow, unknown: Sequence[str]) -> str:
-        """Return that a library is misspelt or of another release; empty if none surely is."""
+    def _missing_library(
+        self, row: ParameterRow, unknown: Sequence[str], what: tuple[str, str]
+    ) -> str:
+        """Return that a library is misspelt or of another release; empty if none surely is.
+
+        `what` says what the node does, and what is not there.
+        """
+        does, noun = what
         others = self._libraries_of_releases(row)
         for name in unknown:
             meant = near(name, row.libraries)
             if name in others or meant is not None:
                 guess = f"; did you mean {quoted(meant)}?" if meant is not None else ""
-                return f"stops: {self._release.title()} has no library {quoted(name)}{guess}"
+                return f"{does}: {self._release.title()} has no {noun} {quoted(name)}{guess}"
         return ""
 
     def _libraries_of_releases(self, row: ParameterRow) -> set[str]:
@@ -565,20 +649,22 @@ class _NodeReader:
                 libraries.update(other.libraries)
         return libraries
 
-    def _certain(self, rule: Rule, name: str, message: str, at: Location) -> _RowFinding:
-        return _RowFinding(name, Mismatch(rule, message, at))
+    def _certain(
+        self, rule: Rule, name: str, message: str, at: Location, names: Strings = ()
+    ) -> _RowFinding:
+        return _RowFinding(name, Mismatch(rule, message, at, names=(name, *names)))
 
     def _near(self, name: str) -> str | None:
         """Return the parameter that another name surely stands for: one part of it is misspelt."""
-        candidates: dict[str, str] = {}  # the parts that are misspelt, by what they stand for
-        corrected_names: dict[str, str] = {}  # the names, by the same
+        candidates = {}  # the parts that are misspelt, by what they stand for
+        corrected_names = {}  # the names, by the same
         for table in self._tables:
             if not name.startswith(table.prefix):
                 continue
             own_parts = name[len(table.prefix) :].split(".")
             for row in table.rows.all_rows.values():
                 corrected = _corrected(own_parts, row.name.split("."))
-                if corrected is None:
+                if not corrected:
                     continue
                 full = table.prefix + ".".join(corrected.parts)
                 if full not in self._values and self.has(full):
@@ -613,19 +699,13 @@ class _NodeReader:
 
     def _misspelt(self, name: str, at: Location, near_name: str) -> _RowFinding:
         """Return that a name surely stands for another parameter."""
-        old, new = name.rpartition(".")[2], near_name.rpartition(".")[2]
+        old = name.rpartition(".")[2]
+        new = near_name.rpartition(".")[2]
         message = (
             f"{self._given.said} has no parameter {quoted(self._given.shown(name))}; did you "
             f"mean {quoted(self._given.shown(near_name))}?"
         )
-        mismatch = Mismatch(
-            _PARAMETER_NAME,
-            message,
-            at,
-            is_certain=False,
-            corrections=corrections(old, at, new),
-        )
-        return _RowFinding(name, mismatch)
+        return _RowFinding(name, warning(_PARAMETER_NAME, message, at).correcting(old, new))
 
     def _first_unknown(self, name: str, table: _RowTable) -> str:
         """Return a name up to the first part with which no parameter begins."""
@@ -651,11 +731,11 @@ class _NodeReader:
         return [f"{table.prefix}{name}" for name in table.rows.by_name][:_MAX_NAMED]
 
     def _missing(
-        self, meant: Mapping[str, str], unread: dict[str, _RowFinding]
+        self, meant: StringsByName, unread: dict[str, _RowFinding]
     ) -> Iterator[_RowFinding]:
         """Yield the parameters without which a node stops, and that it does not get."""
         at = self._given.at
-        assert at is not None
+        assert at
         for table in self._tables:
             for row, name in self._required(table):
                 if name in self._values:
@@ -671,9 +751,10 @@ class _NodeReader:
                 value = self._values[wrong]
                 place = value.name_location
                 text = f"{message}; did you mean it by {wrong!r}?"
-                either = corrections(wrong.rpartition(".")[2], place, row.name.rpartition(".")[2])
-                mismatch = Mismatch(PARAMETER_REQUIRED, text, place, corrections=either)
-                yield _RowFinding(name, mismatch)
+                mismatch = Mismatch(PARAMETER_REQUIRED, text, place)
+                old = wrong.rpartition(".")[2]
+                new = row.name.rpartition(".")[2]
+                yield _RowFinding(name, mismatch.correcting(old, new))
 
     def _required(self, table: _RowTable) -> Iterator[tuple[ParameterRow, str]]:
         """Yield the rows without which a node stops, with the names that it needs.
@@ -689,7 +770,7 @@ class _NodeReader:
                 continue
             (place,) = row.places
             given = self._values.get(f"{table.prefix}{place}")
-            if given is not None and isinstance(given.value, str):
+            if given and isinstance(given.value, str):
                 yield row, f"{table.prefix}{row.name.replace(f'<{place}>', given.value)}"
 
 
@@ -715,7 +796,7 @@ Node(
 )
 
 
-class _OffSwitch(NamedTuple):
+class _OffSwitch(Named):
     """A parameter by whose value, or absence, others have no effect."""
 
     name: str
@@ -744,7 +825,7 @@ def _entries(value: Any) -> Collection[str] | None:
     return frozenset(map(str, value)) if isinstance(value, list) else None
 
 
-class _Corrected(NamedTuple):
+class _Corrected(Named):
     """A name with one part corrected."""
 
     parts: Sequence[str]
@@ -765,8 +846,8 @@ def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> _Corrected | None
     """
     if len(parts) != len(wanted):
         return None
-    corrected: list[str] = []
-    changed: list[tuple[str, str]] = []
+    corrected = []
+    changed = []
     for part, own_part in zip(parts, wanted, strict=True):
         meant = own_part
         if "<#>" in own_part:
@@ -792,6 +873,32 @@ def type_in_words(value: Any) -> str:
     return _WORDS.get(type(value), "")
 
 
+def names_of_types(declared: str, actual: str) -> Strings:
+    """Return how rclcpp calls the types that a parameter has and is given, which are in words.
+
+    >>> names_of_types("a list of doubles", "an integer")
+    ('double_array', 'integer')
+    """
+    names = []
+    for words in (declared, actual):
+        kind = words.rsplit(" ", 1)[-1].replace("boolean", "bool")
+        names.append(f"{kind.removesuffix('s')}_array" if " list " in words else kind)
+    return tuple(names)
+
+
+def _list_values(value: Any) -> list[str]:
+    """Return the names that a parameter has: a list of them, or one."""
+    if isinstance(value, list):
+        return [str(item) for item in value]
+    return [value] if isinstance(value, str) else []
+
+
+def _name_of_tree_node(library: object) -> str:
+    """Return the node of behavior trees that a library of Nav2 has: ComputePathToPose."""
+    stem = re.sub(r"^nav2_|(?:_action|_condition|_service|_node)?_bt_node$", "", str(library))
+    return "".join(word.capitalize() for word in stem.split("_"))
+
+
 def _is_placeholder(value: Any) -> bool:
     """Return whether a text may be one that a launch file replaces, such as KEEPOUT_ENABLED."""
     return isinstance(value, str) and (value.isupper() or not _PLAIN.fullmatch(value))
@@ -802,7 +909,7 @@ def _beyond(row: ParameterRow, value: Any) -> str:
     if isinstance(value, list):
         return _beyond_list(row, value)
     if row.one_of and isinstance(value, str) and value not in row.one_of:
-        return f"needs {enumerated([*map(_shown, row.one_of)], word='or')}, and stops"
+        return f"needs {enumerated(map(_shown, row.one_of), word='or')}, and stops"
     if isinstance(value, bool) or not isinstance(value, int | float):
         return ""
     bounds = (

@@ -3,13 +3,14 @@
 It is compared as well whether own nodes declare them.
 """
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from itertools import chain
-from typing import NamedTuple
 
-from grader.base.names import near
+from grader.base.grouping import Strings
+from grader.base.names import last_part, near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location, Source
 from grader.base.text import MAX_NAMED, enumerated, quoted
 from grader.files.reading import URDF_LIMIT
@@ -43,26 +44,32 @@ from grader.workspace.rules.names import (
     Open,
     Undecided,
     Use,
-    corrections,
-    cost_of_guess,
+    charge_guess,
     warning,
 )
-from grader.workspace.rules.parameter_rules import PARAMETER_REQUIRED, PARAMETER_TYPE, type_in_words
+from grader.workspace.rules.parameter_rules import (
+    PARAMETER_REQUIRED,
+    PARAMETER_TYPE,
+    ParameterValues,
+    names_of_types,
+    type_in_words,
+)
 from grader.workspace.rules.renamed_nodes import key_of_program_name
-from grader.workspace.rules.rule_table import (
-    NO_PARAMETER,
-    Rule,
+from grader.workspace.rules.rule_table import NO_PARAMETER, Rule, Symptom
+from grader.workspace.rules.shared_symptoms import (
+    CLASS_DOES_NOT_EXIST,
+    PARAMETERS_NOT_PARSED,
 )
 
 _OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
-_INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
+_INPUT = on_use(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
 _ROBOT = "robot_description"
 _XACRO = "{http://www.ros.org/wiki/xacro}"
 _MACRO = f"{_XACRO}macro"
 _WITHOUT_LINKS = {_MACRO, f"{_XACRO}property", f"{_XACRO}arg", "material"}
-_WILDCARD = re.compile(r"[*?\[]")
-_SEPARATORS = re.compile(r"[:/]+")
+_WILDCARD = on_use(r"[*?\[]")
+_SEPARATORS = on_use(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
 _SOURCES = "observation_sources"
 _LISTS = ("plugins", "navigators", _SOURCES, "filters", "controller_names")
@@ -75,21 +82,21 @@ def parameter_facts(workspace: Workspace) -> Facts:
     for _ in workspace.parameters.files:
         yield Compared("parameters")
     for path in _files_of_controllers(workspace):
-        if isinstance(workspace.installed.yaml.get(path), YamlNode):
+        if workspace.installed.find_tree(path):
             yield Compared("parameters")
     for tree in parameter_trees(workspace):
         yield from _misplaced_keys(tree)
     for path, nodes in workspace.parameters.files.items():
         yield from _sections_of_others(workspace, path, nodes)
-    for package, node in workspace.launches.nodes:
+    for package, node in workspace.launches.placed_nodes:
         own_node = workspace.code.own_node(node)
-        if own_node is not None:
+        if own_node:
             yield from _declared(node, own_node)
             yield from _given(workspace, package, node, own_node)
     yield from _without_time(workspace)
     for path in workspace.parameters.files:
-        yield from _filters(workspace.installed.yaml.get(path))
-    for package, node in workspace.launches.nodes:
+        yield from _filters(workspace.installed.find_tree(path))
+    for package, node in workspace.launches.placed_nodes:
         yield from _robot_as_text(workspace, package, node)
         yield from _robot_as_argument(workspace, package, node)
     yield from _plugins(workspace)
@@ -104,6 +111,7 @@ _PARAMETER_FILE = Rule(
         "A node that gets the file ends at its start with 'Couldn't parse params file'. A "
         "launch file that reads it stops with a YAML error."
     ),
+    symptoms=(PARAMETERS_NOT_PARSED,),
     wrong="""
 pilot:
   ros__parameters:
@@ -159,9 +167,9 @@ def parameter_trees(workspace: Workspace) -> Iterator[YamlNode]:
     for path, nodes in workspace.parameters.files.items():
         if not _has_container(nodes):
             paths.append(path)
-    for path in (*paths, *_files_of_controllers(workspace)):
-        tree = workspace.installed.yaml.get(path)
-        if isinstance(tree, YamlNode):
+    for path in paths + _files_of_controllers(workspace):
+        tree = workspace.installed.find_tree(path)
+        if tree:
             yield tree
 
 
@@ -181,11 +189,12 @@ def _plugins(workspace: Workspace) -> Facts:
     pluginlib does not know them as they are written.
     """
     sections_by_file = {
-        path: frozenset(_sections(tree))
-        for path, tree in workspace.installed.trees
+        tree.source.path: frozenset(_sections(tree))
+        for tree in workspace.installed.trees
         if is_parameters(tree)
     }
-    for path, tree in workspace.installed.trees:
+    for tree in workspace.installed.trees:
+        path = tree.source.path
         if path not in sections_by_file and "controller_names" not in tree.source.text:
             continue
         elsewhere: set[tuple[str, str]] = set()
@@ -198,17 +207,24 @@ def _plugins(workspace: Workspace) -> Facts:
         yield from _plugin_names(tree, workspace.releases)
 
 
-def _sections(node: YamlNode) -> Iterator[tuple[str, str]]:
-    """Yield the names of the mappings in a file, each with the keys above it."""
-    waiting, visits = [("", node)], Visits()
+def _mappings(tree: YamlNode) -> Iterator[tuple[str, Mapping[str, YamlNode]]]:
+    """Yield the mappings in a file, each with the keys above it."""
+    waiting = [("", tree)]
+    visits = Visits()
     while waiting:
-        above, mapping = waiting.pop()
-        if not isinstance(mapping.value, dict) or not visits.enters(mapping):
-            continue
-        for key, inner in mapping.value.items():
+        above, node = waiting.pop()
+        if isinstance(node.value, dict) and visits.enters(node):
+            yield above, node.value
+            for key, inner in node.value.items():
+                waiting.append((f"{above}/{key.strip('/')}", inner))
+
+
+def _sections(tree: YamlNode) -> Iterator[tuple[str, str]]:
+    """Yield the names of the mappings in a file, each with the keys above it."""
+    for above, mapping in _mappings(tree):
+        for key, inner in mapping.items():
             if isinstance(inner.value, dict):
                 yield above, key
-                waiting.append((f"{above}/{key.strip('/')}", inner))
 
 
 def _is_given_alone(workspace: Workspace, path: str) -> bool:
@@ -227,22 +243,28 @@ def _sections_of_others(
 
     It has nothing for a node that is given it.
     """
-    tree = workspace.installed.yaml.get(path)
-    if not isinstance(tree, YamlNode):
+    tree = workspace.installed.find_tree(path)
+    if not tree:
         return
     for of_other in _meant_sections(workspace, path, tree, nodes):
         at = tree.key_location(*of_other.keys)
+        started_at = of_other.node.location
+        message = (
+            f"there are parameters for {of_other.key}, but none for the node {of_other.name!r}, "
+            "which gets this file"
+        )
+        wrong = Mismatch(_PARAMETER_NODE, message, at, started_at)
         renamed = of_other.name if of_other.is_renamed else None
-        yield _section_of_other(of_other.key, at, of_other.name, renamed, of_other.node.location)
+        yield wrong.correcting(of_other.key, renamed, started_at)
 
 
-class _SectionOfOther(NamedTuple):
+class _SectionOfOther(Named):
     """A section that no node of its name reads, and a node without one that may be meant."""
 
     node: StartedNode
     name: str
     key: str
-    keys: tuple[str, ...]
+    keys: Strings
     is_renamed: bool  # whether the node is surely meant
     is_similar: bool  # whether its name is similar
 
@@ -260,7 +282,7 @@ def _meant_sections(
     names = [name for name in map(workspace.code.find_name, nodes) if name is not None]
     if _has_container(nodes) or len(names) < len(nodes):
         return
-    sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}
+    sections = {last_part(keys[-1]): keys for keys, _ in sections_in(tree) if keys}
     unread = _unread_sections(workspace, sections, names)
     lacking = _without_section(workspace, sections, names)
     is_only_pair = len(unread) == len(lacking) == 1
@@ -271,41 +293,37 @@ def _meant_sections(
             continue
         meant = _section_meant(workspace, path, node, name, unread)
         if meant is not None:
-            is_sure = meant.is_sure or is_only_pair
-            keys = sections[meant.key]
-            yield _SectionOfOther(node, name, meant.key, keys, is_sure, meant.is_sure)
+            key, is_similar = meant
+            is_sure = is_similar or is_only_pair
+            yield _SectionOfOther(node, name, key, sections[key], is_sure, is_similar)
 
 
 def _name_in_files(workspace: Workspace, node: StartedNode, name: str) -> str:
     """Return the name of a node, or that of a section of its file whose name is similar."""
     for path in workspace.parameters.files_given(node) if workspace.reads_meant else ():
-        tree = workspace.installed.yaml.get(path)
+        tree = workspace.installed.find_tree(path)
         nodes = workspace.parameters.files.get(path, ())
-        if isinstance(tree, YamlNode):
+        if tree:
             for of_other in _meant_sections(workspace, path, tree, nodes):
                 if of_other.is_similar and of_other.node == node:
                     return of_other.key
     return name
 
 
-class _MeantSection(NamedTuple):
-    """The section that a node may have been meant to get; it is sure if its name is similar."""
-
-    key: str
-    is_sure: bool
-
-
 def _section_meant(
     workspace: Workspace, path: str, node: StartedNode, name: str, unread: Sequence[str]
-) -> _MeantSection | None:
-    """Return the section that a node without one may mean; None if another node may read it."""
-    workspace.charge(cost_of_guess(len(unread)))
+) -> tuple[str, bool] | None:
+    """Return the section that a node without one may mean, and whether its name is similar.
+
+    It is None if another node may read it.
+    """
+    charge_guess(workspace, unread)
     similar = near(name, unread)
     if similar is not None:
-        return _MeantSection(similar, is_sure=True)
+        return similar, True
     if _may_read_another(workspace, path, node):
         return None
-    return _MeantSection(unread[0], is_sure=False)
+    return unread[0], False
 
 
 _PARAMETER_NODE = Rule(
@@ -335,17 +353,6 @@ pilot:
 )
 
 
-def _section_of_other(
-    key: str, at: Location, name: str, renamed: str | None, started_at: Location
-) -> Mismatch:
-    """Return that a section is not of a node that gets the file; `renamed` is its right key."""
-    message = (
-        f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
-    )
-    either = corrections(key, at, renamed, started_at)
-    return Mismatch(_PARAMETER_NODE, message, at, started_at, corrections=either)
-
-
 def _is_renamed(workspace: Workspace, tree: YamlNode, node: StartedNode) -> bool:
     """Return whether a file has a section for a node under the name that its program gives it."""
     keys = keys_of_sections(tree)
@@ -361,7 +368,7 @@ def _may_read_another(workspace: Workspace, path: str, node: StartedNode) -> boo
     """
     if path in workspace.installed.passed_files:
         return True
-    if workspace.find_package(node) is not None:
+    if workspace.find_package(node):
         return workspace.code.has_other_nodes(node)
     return "frames" not in package_row(node.package).without
 
@@ -386,7 +393,8 @@ def _unread_sections(
     children: set[str] = set()
     for name in set(names):
         children |= workspace.code.find_children(name)
-    unread, known_names = [], set(names)
+    unread = []
+    known_names = set(names)
     for key in sections:
         is_read = key in children or key in known_names
         if not is_read and _WILDCARD.search(key):
@@ -406,6 +414,7 @@ _PARAMETER_KEY = Rule(
         "rcl refuses the whole file with an error such as 'Cannot have a value before "
         "ros__parameters'. The node ends at its start."
     ),
+    symptoms=(PARAMETERS_NOT_PARSED,),
     wrong="""
 pilot:
   speed: 2.0
@@ -428,7 +437,7 @@ def _misplaced_keys(tree: YamlNode) -> Mismatches:
 
     Keys ros__parameters that are misspelt, and those inside of others, are yielded too.
     """
-    waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
+    waiting = [("", tree, False)]
     visits = {True: Visits(), False: Visits()}  # by whether it is below a key ros__parameters
     while waiting:
         name, node, is_below = waiting.pop()
@@ -441,7 +450,7 @@ def _misplaced_keys(tree: YamlNode) -> Mismatches:
             continue
         for key, inner in node.value.items():
             mismatch = _misplaced_key(name, node, key, is_below=is_below)
-            if mismatch is not None:
+            if mismatch:
                 yield mismatch
             else:
                 waiting.append((key, inner, is_below or key == PARAMETERS))
@@ -453,11 +462,10 @@ def _misplaced_key(name: str, node: YamlNode, key: str, *, is_below: bool) -> Mi
         message = f"{name}: ros__parameters is inside of other ros__parameters"
         return Mismatch(_PARAMETER_KEY, message, node.key_location(key))
     inner = node.get(key)
-    if not is_below and inner is not None and is_misspelt_key(key, inner):
-        message = f"{name}: rcl does not know the key {key!r}; did you mean {PARAMETERS!r}?"
-        at = node.key_location(key)
-        either = corrections(key, at, PARAMETERS)
-        return Mismatch(_PARAMETER_KEY, message, at, corrections=either)
+    if not is_below and inner and is_misspelt_key(key, inner):
+        message = f"{name}: rcl does not know the key {key!r}"
+        wrong = Mismatch(_PARAMETER_KEY, message, node.key_location(key))
+        return wrong.meaning(key, PARAMETERS)
     return None
 
 
@@ -466,7 +474,7 @@ def _declared(node: StartedNode, own_node: NodeFacts) -> Facts:
 
     One for which the node asks has_parameter() need not be declared.
     """
-    owner = f"{node.package}/{node.executable}"
+    owner = node.program_path
     guarded = {parameter.name for parameter in own_node.parameters if parameter.is_guard}
     for parameter in own_node.parameters:
         at = parameter.location
@@ -485,7 +493,7 @@ def _declared(node: StartedNode, own_node: NodeFacts) -> Facts:
 
 def _given(workspace: Workspace, package: Package, node: StartedNode, own_node: NodeFacts) -> Facts:
     """Yield the parameters that a node of the workspace is given."""
-    owner = f"{node.package}/{node.executable}"
+    owner = node.program_path
     if _may_declare_more(workspace, node, own_node):
         yield Open("parameter", owner)
     name_of_node = workspace.code.find_name(node)
@@ -504,19 +512,20 @@ def _given(workspace: Workspace, package: Package, node: StartedNode, own_node: 
 
 
 def _parameter_uses(
-    workspace: Workspace, node: StartedNode, values: Mapping[str, ParameterValue], said: str
+    workspace: Workspace, node: StartedNode, values: ParameterValues, said: str
 ) -> Iterator[Use | Mismatch]:
     """Yield the names of values that are for a node alone.
 
     What a file gives to every node, or to another of the same name, need not be declared by it.
     What another launch gives to a program of the same name that declares it does no harm.
     """
-    owner = f"{node.package}/{node.executable}"
+    owner = node.program_path
     shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
     own_node = workspace.code.own_node(node)
     # That the code reads it and does not declare it is a mistake of the code.
-    read, declared = set(), set()
-    for parameter in own_node.parameters if own_node is not None else ():
+    read = set()
+    declared = set()
+    for parameter in own_node.parameters if own_node else ():
         if parameter.is_declared:
             declared.add(parameter.name)
         elif parameter.is_needed:
@@ -527,7 +536,7 @@ def _parameter_uses(
         if value.location in shared or name.startswith("qos_overrides."):
             continue
         other = _other_declaring(workspace, node, name)
-        if other is None or own_node is None or name in declared:
+        if other is None or not own_node or name in declared:
             yield Use("parameter", name, value.name_location, said, owner)
         elif None not in declared and not _may_declare_more(workspace, node, own_node):
             message = (
@@ -540,7 +549,7 @@ def _parameter_uses(
 def _may_declare_more(workspace: Workspace, node: StartedNode, own_node: NodeFacts) -> bool:
     """Return whether a node of the workspace may declare parameters that are not read."""
     package = workspace.find_package(node)
-    assert package is not None  # that has the code of the node
+    assert package  # that has the code of the node
     nodes = workspace.code.by_package[package.name]
     return bool(own_node.doubts) or nodes.has_loose_declarations
 
@@ -551,7 +560,7 @@ def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Locat
     The node is of another program, or a controller, and gets the parameters.
     """
     for given in workspace.parameters.owners.get(workspace.code.find_name(node) or "", ()):
-        if (given.node.package, given.node.executable) == (node.package, node.executable):
+        if given.node.program == node.program:
             continue
         workspace.charge(len(given.values))
         declared = _declared_names(workspace, given.node)
@@ -565,7 +574,7 @@ def _other_declaring(workspace: Workspace, node: StartedNode, name: str) -> str 
     """Return another program that is started as a node of the same name, and has a parameter."""
     for given in workspace.parameters.owners.get(workspace.code.find_name(node) or "", ()):
         facts = workspace.code.own_node(given.node)
-        if facts is None or given.node.executable == node.executable or name not in given.values:
+        if not facts or given.node.executable == node.executable or name not in given.values:
             continue
         if any(each.name == name and each.is_declared for each in facts.parameters):
             return given.node.executable
@@ -575,7 +584,7 @@ def _other_declaring(workspace: Workspace, node: StartedNode, name: str) -> str 
 def _declared_names(workspace: Workspace, node: StartedNode) -> set[str | None]:
     """Return the parameters that a node declares; with None where not all are known."""
     facts = workspace.code.own_node(node)
-    if facts is None or facts.doubts:
+    if not facts or facts.doubts:
         return {None}
     return {parameter.name for parameter in facts.parameters}
 
@@ -584,7 +593,7 @@ def _not_given(
     workspace: Workspace,
     node: StartedNode,
     own_node: NodeFacts,
-    values: Mapping[str, ParameterValue] | None,
+    values: ParameterValues | None,
 ) -> Mismatches:
     """Yield the parameters that a node declares without a value, reads, and is not given.
 
@@ -612,7 +621,7 @@ def _not_given(
             )
 
 
-def _types_given(node: NodeFacts, values: Mapping[str, ParameterValue]) -> Mismatches:
+def _types_given(node: NodeFacts, values: ParameterValues) -> Mismatches:
     """Yield the values of other types than a node declares."""
     for parameter in node.parameters:
         name = parameter.name or ""
@@ -630,7 +639,7 @@ def _without_time(workspace: Workspace) -> Mismatches:
     """Yield that `use_sim_time`, which every node declares, is given no boolean."""
     for given in chain.from_iterable(workspace.parameters.owners.values()):
         value = given.values.get("use_sim_time")
-        if value is not None:
+        if value:
             yield from _other_type("use_sim_time", value, type_in_words(True), at=None)
 
 
@@ -647,13 +656,14 @@ def _other_type(
     actual = type_in_words(given.value)
     if not declared or not actual or declared == actual:
         return
-    there = f" ({at.file_and_line})" if at is not None else ""
+    there = f" ({at.file_and_line})" if at else ""
     message = (
         f"the parameter {name!r} is given {actual}{given.remark}; {reader} declares "
         f"{declared}{there}, and stops"
     )
-    word = name if given.named_at is None else ""
-    yield Mismatch(PARAMETER_TYPE, message, given.location, at, is_certain, word=word)
+    word = name if not given.named_at else ""
+    names = (name, *names_of_types(declared, actual))
+    yield Mismatch(PARAMETER_TYPE, message, given.location, at, is_certain, word=word, names=names)
 
 
 _FILTER_SIZE = Rule(
@@ -693,9 +703,9 @@ Node(
 )
 
 
-def _filters(tree: YamlNode | YamlFault | None) -> Facts:
+def _filters(tree: YamlNode | None) -> Facts:
     """Yield which values of an input a filter of robot_localization takes, if not 15."""
-    for _, section in sections_in(tree) if isinstance(tree, YamlNode) else ():
+    for _, section in sections_in(tree) if tree else ():
         for value in values_in(section):
             count = len(value.node.items)
             if value.keys and _INPUT.fullmatch(value.keys[-1]) and count not in (0, 15):
@@ -714,6 +724,15 @@ _ROBOT_TEXT = Rule(
     why=(
         "robot_state_publisher parses the path as XML and ends with 'Unable to initialize "
         "urdf::model from robot description'."
+    ),
+    symptoms=(
+        Symptom(
+            "document-empty",
+            pattern=r"Error document empty\.|XML_ERROR_EMPTY_DOCUMENT",
+            source="ros/urdfdom 9a1f5b4, urdf_parser/src/model.cpp:101",
+            sentence="robot_description is no XML.",
+            example="Error: Error=XML_ERROR_EMPTY_DOCUMENT ErrorID=13 (0xd) Line number=0",
+        ),
     ),
     wrong="""
 Node(
@@ -734,19 +753,40 @@ Node(
 
 def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) -> Facts:
     """Yield that a program that needs the text of a robot gets a path in its place."""
-    row = row_for(f"{node.package}/{node.executable}", _ROBOT)
-    if row is None or not row.is_required or node.arguments != ():
+    row = row_for(node.program_path, _ROBOT)
+    if not row or not row.is_required or node.arguments != ():
         return
     robot = workspace.parameters.given_to(package, node).values.get(_ROBOT)
-    if robot is not None and isinstance(robot.value, FileText):
-        yield from _xacro_as_text(workspace, node, robot)
-        yield from _only_macros(workspace, node, robot)
-    if robot is not None and isinstance(robot.value, str):
+    if robot and isinstance(robot.value, FileText):
+        yield from _file_as_text(workspace, node, robot.location, robot.value)
+    if robot and isinstance(robot.value, str):
         text = robot.value.strip()
         if text and not text.startswith("<"):
             advice = "give it the content of the file, not the path"
             message = f"robot_description is no XML, so {node.executable} stops: {advice}"
             yield Mismatch(_ROBOT_TEXT, message, robot.location)
+
+
+def _file_as_text(workspace: Workspace, node: StartedNode, at: Location, text: FileText) -> Facts:
+    """Yield what is wrong with the file whose text a program gets.
+
+    It reads an SDF with the plug-in sdformat_urdf, which a package then declares.
+    """
+    contents = text.contents
+    name = last_part(contents.path)
+    is_read = any(package.depends_on("sdformat_urdf") for package in workspace.packages)
+    if name.endswith((".sdf", ".world")) and not is_read:
+        message = (
+            f"robot_description is the text of {name}, which is SDF, and {node.executable} reads "
+            "URDF"
+        )
+        yield Mismatch(_ROBOT_TEXT, message, Location(at.path, *text.at))
+    path = workspace.installed.find_source(contents.path)
+    data = workspace.tree.read(path, URDF_LIMIT) if path is not None else None
+    if path is not None and data is not None:
+        if contents.by != "xacro":
+            yield from _xacro_as_text(node, at, path, data)
+        yield from _only_macros(node, at, path, data)
 
 
 _ROBOT_EXPANDED = Rule(
@@ -786,24 +826,18 @@ Node(
 )
 
 
-def _xacro_as_text(workspace: Workspace, node: StartedNode, robot: ParameterValue) -> Facts:
+def _xacro_as_text(node: StartedNode, at: Location, path: str, data: bytes) -> Facts:
     """Yield that a program gets the text of a xacro file, whose tags only xacro expands."""
-    assert isinstance(robot.value, FileText)
-    contents = robot.value.contents
-    path = workspace.installed.find_source(contents.path)
-    data = workspace.tree.read(path, URDF_LIMIT) if path is not None else None
-    if contents.by == "xacro" or path is None or data is None:
-        return
     first, *others = data.split(b"<!--")
     written = [first, *(text.partition(b"-->")[2] for text in others)]
     if not any(b"<xacro:" in text for text in written):
         return
-    name = path.rpartition("/")[2]
+    name = last_part(path)
     message = (
         f"robot_description is the text of {name}, which is xacro, and {node.executable} does not "
         "expand it: give it Command(['xacro ', path])"
     )
-    yield Mismatch(_ROBOT_EXPANDED, message, robot.location, Location(path, 1, 1))
+    yield Mismatch(_ROBOT_EXPANDED, message, at, Location(path, 1, 1))
 
 
 _ROBOT_LINKS = Rule(
@@ -858,15 +892,12 @@ def generate_launch_description():
 )
 
 
-def _only_macros(workspace: Workspace, node: StartedNode, robot: ParameterValue) -> Facts:
+def _only_macros(node: StartedNode, at: Location, path: str, data: bytes) -> Facts:
     """Yield that a program gets a robot from a file that defines macros and calls none."""
-    assert isinstance(robot.value, FileText)
-    path = workspace.installed.find_source(robot.value.contents.path)
-    data = workspace.tree.read(path, URDF_LIMIT) if path is not None else None
-    if path is None or data is None or b"macro" not in data:
+    if b"macro" not in data:
         return
     try:
-        elements = [*XmlFile(data, Source(path, data.decode("utf-8", "replace"))).root]
+        elements = list(XmlFile(data, Source.decoded(path, data)).root)
     except XmlFault:  # a problem of the file
         return
     tags = {element.tag for element in elements if isinstance(element.tag, str)}
@@ -877,7 +908,7 @@ def _only_macros(workspace: Workspace, node: StartedNode, robot: ParameterValue)
             f"{path.rpartition('/')[2]} only defines {named} and calls no macro, so the robot has "
             f"no link and {node.executable} stops: call the macro in the file"
         )
-        yield Mismatch(_ROBOT_LINKS, message, robot.location, Location(path, 1, 1))
+        yield Mismatch(_ROBOT_LINKS, message, at, Location(path, 1, 1))
 
 
 def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode) -> Facts:
@@ -888,7 +919,7 @@ def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode
     words = [word for word in node.arguments or () if word is not None]
     if not words or not words[0].endswith((".urdf", ".xacro", ".xml")):
         return
-    having = releases_with("program argument", f"{node.package}/{node.executable} URDF")
+    having = releases_with("program argument", f"{node.program_path} URDF")
     stated = workspace.releases
     if not having or not stated or any(release in having for release in stated):
         return
@@ -906,18 +937,12 @@ def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Fac
 
     There is none beside them, and none at the same place elsewhere.
     """
-    waiting, visits = [("", tree)], Visits()
-    while waiting:
-        above, node = waiting.pop()
-        if not isinstance(node.value, dict) or not visits.enters(node):
-            continue
-        for key, inner in node.value.items():
-            waiting.append((f"{above}/{key.strip('/')}", inner))
-        for fact in _lists_of_plugins(tree.source.path, node.value):
+    for above, mapping in _mappings(tree):
+        for fact in _lists_of_plugins(tree.source.path, mapping):
             if not isinstance(fact, Use):
                 yield fact
             elif (above, fact.name) not in elsewhere:
-                yield from _missing_section(fact, node.value)
+                yield from _missing_section(fact, mapping)
 
 
 def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[Definition | Use]:
@@ -929,7 +954,7 @@ def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[De
         owner = f"{path}:{inner.location.line}"
         for name, node in sections.items():
             yield Definition("plugin section", name, node.location, owner)
-        listed = [*_listed(key, inner)]
+        listed = list(_listed(key, inner))
         names = [name for name, _ in listed]
         # Then only a section that is nearly called so is wrong.
         is_default = not sections.keys() >= set(names) and _is_default(key, names)
@@ -952,7 +977,7 @@ def _missing_section(use: Use, mapping: Mapping[str, YamlNode]) -> Iterator[Use 
         return
     [(holder, section)] = holders.items()
     sections = [section, *mapping.values()]
-    if use.said != _SOURCES and all(one.get("plugin") is None for one in sections):
+    if use.said != _SOURCES and all(not one.get("plugin") for one in sections):
         return
     message = f"the section {use.name!r} is in {holder!r}, but belongs beside {use.said}"
     is_layer = holder.endswith("layer") or mapping[holder].get("plugin") is not None
@@ -966,10 +991,10 @@ def _missing_section(use: Use, mapping: Mapping[str, YamlNode]) -> Iterator[Use 
 
 def _sections_with(name: str, mapping: Mapping[str, YamlNode]) -> dict[str, YamlNode]:
     """Return the sections of a name in the sections of a mapping, by the names of these."""
-    sections: dict[str, YamlNode] = {}
+    sections = {}
     for holder, beside in mapping.items():
         inner = beside.get(name)
-        if inner is not None and isinstance(inner.value, dict):
+        if inner and isinstance(inner.value, dict):
             sections[holder] = inner
     return sections
 
@@ -1006,6 +1031,7 @@ _PLUGIN_NAME = Rule(
         "pluginlib prints that the class does not exist, with the declared types. The node is "
         "not configured, and the lifecycle manager aborts the start of Nav2."
     ),
+    symptoms=(CLASS_DOES_NOT_EXIST,),
     wrong="""
 plugins: [obstacle_layer]
 obstacle_layer:
@@ -1041,9 +1067,8 @@ def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Facts:
         if not set(possible).isdisjoint(having) or (having and not releases):
             yield Compared("parameters")  # of another release, at most
             continue
-        message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
-        at = value.node.location
-        yield Mismatch(_PLUGIN_NAME, message, at, corrections=corrections(text, at, meant))
+        message = f"{value.said}: there is no plugin {text!r}"
+        yield Mismatch(_PLUGIN_NAME, message, value.node.location).meaning(text, meant)
 
 
 def _plugins_of_two_releases(values: Sequence[YamlValue]) -> Mismatches:

@@ -3,11 +3,13 @@
 import posixpath
 import re
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 from grader.base.names import closest, near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location, Source
 from grader.ros.package.package import MANIFEST, Package
+from grader.ros.xml.elements import first_text
 from grader.workspace.graph.started_controllers import defined_controllers
 from grader.workspace.model.text_files import MAX_YAML
 from grader.workspace.model.workspace import Workspace
@@ -16,7 +18,6 @@ from grader.workspace.rules.names import (
     Facts,
     Mismatch,
     Mismatches,
-    corrections,
     warning,
 )
 from grader.workspace.rules.rule_table import (
@@ -26,14 +27,15 @@ from grader.workspace.rules.rule_table import (
 
 _MADE = (".xml.in", ".xml.em")  # endings of files of which a build makes descriptions
 _DESCRIBES = "base_class_type"
-_LIBRARY = re.compile(r"<library\s++path\s*+=\s*+[\"']([^\"']++)[\"']")
-_CLASS = re.compile(r"<class\s++([^<>]*+)>")
-_ATTRIBUTE = re.compile(r"\b(\w++)\s*+=\s*+[\"']([^\"']*+)[\"']")
+_LIBRARY = on_use(r"<library\s++path\s*+=\s*+[\"']([^\"']++)[\"']")
+_CLASS = on_use(r"<class\s++([^<>]*+)>")
+_ATTRIBUTE = on_use(r"\b(\w++)\s*+=\s*+[\"']([^\"']*+)[\"']")
 # The packages whose classes are the bases of controllers and of hardware.
-_CONTROLLERS, _HARDWARE = "controller_interface::", "hardware_interface::"
+_CONTROLLERS = "controller_interface::"
+_HARDWARE = "hardware_interface::"
 
 
-class _DescribedClass(NamedTuple):
+class _DescribedClass(Named):
     """A class that a file for pluginlib describes, and where its element begins."""
 
     name: str  # by which pluginlib finds it
@@ -43,7 +45,7 @@ class _DescribedClass(NamedTuple):
     location: Location
 
 
-class _NamedClass(NamedTuple):
+class _NamedClass(Named):
     """A class that a file names for pluginlib."""
 
     name: str
@@ -65,10 +67,11 @@ def plugin_class_facts(workspace: Workspace) -> Facts:
 
 def _classes_in(source: Source, package: str) -> Iterator[_DescribedClass]:
     for element in _CLASS.finditer(source.text):
-        attributes: dict[str, str] = {}
+        attributes = {}
         for name, value in _ATTRIBUTE.findall(element[1]):
             attributes[name] = value
-        kind, base = attributes.get("type", ""), attributes.get(_DESCRIBES, "")
+        kind = attributes.get("type", "")
+        base = attributes.get(_DESCRIBES, "")
         at = source.at(element.start())
         yield _DescribedClass(attributes.get("name", kind), kind, base, package, at)
 
@@ -89,8 +92,14 @@ def _descriptions(workspace: Workspace, package: Package) -> Iterator[Source]:
 
 def named_classes(workspace: Workspace) -> Iterator[_NamedClass]:
     """Yield the controllers and hardware whose classes files name."""
-    yield from _controllers(workspace)
-    yield from _hardware(workspace)
+    for controller in defined_controllers(workspace):
+        name = controller.type.text or ""
+        yield _NamedClass(name, controller.type.location, _CONTROLLERS, f"{controller.name}.type")
+    for robot in workspace.robots.known:
+        for system in robot.systems:
+            for plugin in system.iterfind("hardware/plugin"):
+                name = first_text(plugin)
+                yield _NamedClass(name, robot.place(plugin), _HARDWARE, "<plugin>")
 
 
 _PLUGIN_CLASS = Rule(
@@ -133,10 +142,8 @@ def _not_described(workspace: Workspace, described: Sequence[_DescribedClass]) -
             for each in described
             if each.package == prefix and each.base.startswith(wanted.base)
         ]
-        owners = [package for package in workspace.packages if package.name == prefix]
-        if not names or len(owners) != 1:
-            continue
-        if any(path.endswith(_MADE) for path in owners[0].tree.files):
+        owner = workspace.own_packages.get(prefix)
+        if not names or not owner or any(path.endswith(_MADE) for path in owner.tree.files):
             continue
         yield Compared("controllers")
         if any(wanted.name in (each.name, each.type) for each in described):
@@ -145,23 +152,7 @@ def _not_described(workspace: Workspace, described: Sequence[_DescribedClass]) -
         meant = closest(wanted.name, names)
         hint = f"did you mean {meant!r}?" if meant is not None else f"it has {', '.join(names)}"
         message = f"{wanted.user}: the package {prefix!r} describes no {wanted.name!r}; {hint}"
-        either = corrections(wanted.name, wanted.location, meant)
-        yield Mismatch(_PLUGIN_CLASS, message, wanted.location, corrections=either)
-
-
-def _controllers(workspace: Workspace) -> Iterator[_NamedClass]:
-    for controller in defined_controllers(workspace):
-        name = controller.type.text or ""
-        user = f"{controller.name}.type"
-        yield _NamedClass(name, controller.type.location, _CONTROLLERS, user)
-
-
-def _hardware(workspace: Workspace) -> Iterator[_NamedClass]:
-    for robot in workspace.robots.known:
-        for system in robot.systems:
-            for plugin in system.iterfind("hardware/plugin"):
-                name = (plugin.text or "").strip()
-                yield _NamedClass(name, robot.place(plugin), _HARDWARE, "<plugin>")
+        yield Mismatch(_PLUGIN_CLASS, message, wanted.location).correcting(wanted.name, meant)
 
 
 _PLUGIN_EXPORTED = Rule(
@@ -193,7 +184,7 @@ _PLUGIN_EXPORTED = Rule(
 def _not_exported(package: Package, source: Source) -> Mismatches:
     """Yield a file of classes that neither CMakeLists.txt nor package.xml exports."""
     setup = package.installation
-    if setup is None or not package.is_cmake or setup.fault is not None:
+    if not setup or not package.is_cmake or setup.fault:
         return
     name = posixpath.basename(source.path)
     manifest = (package.tree.read(MANIFEST, MAX_YAML) or b"").decode("utf-8", "replace")
@@ -242,7 +233,7 @@ pluginlib_export_plugin_description_file(controller_interface descriptions.xml)
 def _other_libraries(package: Package, source: Source) -> Mismatches:
     """Yield the libraries of a file of classes that no target makes, where a similar one is."""
     setup = package.installation
-    targets = setup.targets if setup is not None and setup.fault is None else ()
+    targets = setup.targets if setup and not setup.fault else ()
     names = [target.name for target in targets]
     for match in _LIBRARY.finditer(source.text):
         path = posixpath.basename(match[1])
@@ -250,6 +241,5 @@ def _other_libraries(package: Package, source: Source) -> Mismatches:
         if meant is None or {path, path.removeprefix("lib")} & {*names} or "$" in path:
             continue
         at = source.at(match.start(1))
-        message = f"no target makes the library {path!r}; did you mean {meant!r}?"
-        either = corrections(path, at, meant)
-        yield warning(_PLUGIN_LIBRARY, message, at)._replace(corrections=either)
+        message = f"no target makes the library {path!r}"
+        yield warning(_PLUGIN_LIBRARY, message, at).meaning(path, meant)

@@ -5,9 +5,10 @@ The nodes are those that a lifecycle manager looks after.
 
 from collections.abc import Collection, Sequence
 from contextlib import suppress
-from typing import NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.names import last_part
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.ros.installation.installation import Installation
 from grader.ros.installation.places import is_launch_file
@@ -35,14 +36,9 @@ from grader.workspace.rules.names import (
     Open,
     Undecided,
     Use,
-    corrections,
     warning,
 )
-from grader.workspace.rules.rule_table import (
-    NO_PROGRAM,
-    NO_RUN,
-    Rule,
-)
+from grader.workspace.rules.rule_table import NO_PROGRAM, NO_RUN, Rule, Symptom
 
 _MAX_FIRST_LINE = 100  # bytes
 _OF_MISSING = 5_000  # parts: similar names are searched among all programs
@@ -57,6 +53,42 @@ _PROGRAM_EXISTS = Rule(
         "ros2 launch prints that the executable is not found on the libexec directory, and "
         "shuts down all nodes of the launch."
     ),
+    symptoms=(
+        Symptom(
+            "executable-not-found",
+            pattern=(
+                r"executable '(?P<program>[^']{1,200}+)' not found on the libexec directory "
+                r"'[^']{1,400}?/lib/(?P<package>[\w-]{1,100}+)\'"
+            ),
+            source=(
+                "ros2/launch_ros f9ab937, launch_ros/launch_ros/substitutions/"
+                "executable_in_package.py:85"
+            ),
+            sentence="The package is installed, and has no program of this name.",
+            example=(
+                "executable 'mover' not found on the libexec directory "
+                "'/home/ann/ws/install/cell/lib/cell'"
+            ),
+            within=("program", "package"),
+        ),
+        Symptom(
+            "libexec-missing",
+            pattern=(
+                r"package '(?P<package>[\w-]{1,100}+)' found at '[^']{1,400}+', but libexec "
+                r"directory '[^']{1,400}+' does not exist"
+            ),
+            source=(
+                "ros2/launch_ros f9ab937, launch_ros/launch_ros/substitutions/"
+                "executable_in_package.py:80"
+            ),
+            sentence="The package is installed without programs where ros2 looks for them.",
+            example=(
+                "package 'cell' found at '/home/ann/ws/install/cell', but libexec directory "
+                "'/home/ann/ws/install/cell/lib/cell' does not exist"
+            ),
+            within=("package",),
+        ),
+    ),
     wrong="Node(package='rover', executable='joystick_node'),",
     right="Node(package='rover', executable='joystick'),",
     beside={
@@ -67,8 +99,8 @@ _PROGRAM_EXISTS = Rule(
 
 def program_facts(workspace: Workspace) -> Facts:
     """Yield the programs that launch files start and no package has, and unstarted nodes."""
-    nodes = [pair for pair in workspace.launches.nodes if not pair[1].is_component]
-    started = {(node.package, node.executable) for _, node in nodes}
+    nodes = [pair for pair in workspace.launches.placed_nodes if not pair[1].is_component]
+    started = {node.program for _, node in nodes}
     for package in workspace.packages:
         yield from _entry_points(workspace, package)
         yield from _unstarted_scripts(package, started)
@@ -77,7 +109,7 @@ def program_facts(workspace: Workspace) -> Facts:
             yield Undecided("programs", f"several packages are named {node.package!r}")
             continue
         owner = package.find(node.package)
-        if owner is not None:
+        if owner:
             yield from _own_program(workspace, owner, node)
             continue
         row = package_row(node.package)
@@ -88,9 +120,7 @@ def program_facts(workspace: Workspace) -> Facts:
         if node.executable not in programs:
             workspace.charge(_OF_MISSING)
             missing = _missing_program(node.package, node.executable, programs)
-            either = corrections(node.executable, node.location, missing.meant)
-            wrong = Mismatch(_PROGRAM_EXISTS, missing.message, node.location, corrections=either)
-            yield wrong._replace(word=node.executable, names=(node.package,))
+            yield _program_missing(node, missing)
     yield from _lifecycle(workspace)
 
 
@@ -100,15 +130,13 @@ def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Fac
     If it has the program, yield that Linux cannot execute it.
     """
     yield Compared("programs")
-    if owner.installation is not None and owner.installation.unread:
+    if owner.installation and owner.installation.unread:
         yield Undecided("programs", owner.installation.unread)
-    if owner.has_program(node.package, node.executable) is False:
+    if owner.has_program(*node.program) is False:
         workspace.charge(_OF_MISSING + len(owner.tree.files))
         missing = _why_no_program(owner, node.executable)
         start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
-        either = corrections(node.executable, node.location, missing.meant, start)
-        wrong = Mismatch(_PROGRAM_EXISTS, missing.message, node.location, corrections=either)
-        yield wrong._replace(word=node.executable, names=(node.package,))
+        yield _program_missing(node, missing, start)
     else:
         yield from _not_executed(owner, node.executable, node.location)
 
@@ -121,6 +149,23 @@ _ENTRY_POINT = Rule(
     why=(
         "colcon build succeeds, because it does not import the module. The program then ends at"
         " its start with an ImportError or AttributeError."
+    ),
+    symptoms=(
+        Symptom(
+            "entry-point",
+            pattern=(
+                r"functools\.reduce\(getattr, attrs, module\).{0,100}? AttributeError: module "
+                r"'(?P<module>[\w.]{1,200}+)' has no attribute '(?P<function>\w{1,200}+)\'"
+            ),
+            source="python/cpython v3.11.7, Lib/importlib/metadata/__init__.py:204",
+            sentence="The module of an entry point has no such function.",
+            example=(
+                'Traceback (most recent call last): File "/usr/lib/python3.11/importlib/metadata/'
+                '__init__.py", line 204, in load return functools.reduce(getattr, attrs, module) '
+                "AttributeError: module 'lab_nodes.worker' has no attribute 'mian'"
+            ),
+            within=("function",),
+        ),
     ),
     wrong="entry_points={'console_scripts': ['joystick = rover.joystick:run']},",
     right="entry_points={'console_scripts': ['joystick = rover.joystick:main']},",
@@ -139,10 +184,10 @@ def _entry_points(workspace: Workspace, package: Package) -> Facts:
         size = package.tree.files[path].size if path is not None else 0
         workspace.charge(len(package.tree.files) + size)  # the functions of the module
         fault = entry_fault(package, entry.name)
-        if fault is not None:
+        if fault:
             message = f"the entry point of {entry.name!r} names no function: {fault.message}"
-            either = corrections(fault.written, fault.location, fault.meant)
-            yield Mismatch(_ENTRY_POINT, message, fault.location, corrections=either)
+            wrong = Mismatch(_ENTRY_POINT, message, fault.location)
+            yield wrong.correcting(fault.written, fault.meant)
     yield from _other_modules(package)
     yield from _modules_not_installed(workspace, package)
 
@@ -221,10 +266,10 @@ def _other_modules(package: Package) -> Mismatches:
         path = module_path(package, own_module)
         if entry.name == last or own_module in modules or path is None or not entry.function:
             continue
-        if entry_fault(package, entry.name) is not None:  # which is said
+        if entry_fault(package, entry.name):  # which is said
             continue
         code = read_module(package, path)
-        if code is not None and entry.function in bound_in(code.tree):
+        if code and entry.function in bound_in(code.tree):
             message = (
                 f"the entry point {entry.name!r} runs {entry.module}; no entry point runs "
                 f"{own_module}, which has {entry.function}() too"
@@ -240,7 +285,7 @@ def _unstarted_scripts(package: Package, started: Collection[tuple[str, str]]) -
     """
     setup = package.installation
     home = f"lib/{package.name}/"
-    for target in setup.scripts if setup is not None else ():
+    for target in setup.scripts if setup else ():
         name = target.removeprefix(home)
         source = package.installed.get(target, "")
         is_other = "/" in name or name == "__init__.py" or is_launch_file(source)
@@ -257,6 +302,19 @@ _PROGRAM_RUNS = Rule(
     why=(
         "Linux does not execute the script: ros2 run and ros2 launch fail with 'Exec format "
         "error', or because the interpreter does not exist."
+    ),
+    symptoms=(
+        Symptom(
+            "exec-format",
+            pattern=r"\[Errno 8\] Exec format error: '(?:[^']{0,400}/)?(?P<program>[^'/]{1,200}+)'",
+            source="python/cpython v3.11.7, Lib/subprocess.py:1950",
+            sentence="A script does not begin with the line that names its interpreter.",
+            example=(
+                "OSError: [Errno 8] Exec format error: '/home/ann/ws/install/cell/lib/cell/"
+                "mover.py'"
+            ),
+            within=("program",),
+        ),
     ),
     wrong="""
 import rclpy
@@ -298,7 +356,16 @@ def _not_executed(package: Package, name: str, at: Location | None) -> Mismatche
             yield Mismatch(_PROGRAM_RUNS, message, Location(package.path(source), 1, 1), at)
 
 
-class _MissingProgram(NamedTuple):
+def _program_missing(
+    node: StartedNode, missing: "_MissingProgram", start: Location | None = None
+) -> Mismatch:
+    """Return that the program of a node is missing, which another name at `start` may have."""
+    name = node.executable
+    wrong = Mismatch(_PROGRAM_EXISTS, missing.message, node.location, word=name)
+    return wrong._replace(names=(node.package,)).correcting(name, missing.meant, start)
+
+
+class _MissingProgram(Named):
     """Why a package has no program of a name, and the name of the program that may be meant."""
 
     message: str
@@ -307,10 +374,11 @@ class _MissingProgram(NamedTuple):
 
 def _why_no_program(package: Package, name: str) -> _MissingProgram:
     """Return that ros2 run does not find a program, and where it is, or which there are."""
-    setup, home = package.installation, f"lib/{package.name}"
+    setup = package.installation
+    home = f"lib/{package.name}"
     entries = [entry.name for entry in entry_points(package)]
     if name in entries:
-        folder = setup.scripts_folder if setup is not None else ""
+        folder = setup.scripts_folder if setup else ""
         return _MissingProgram(
             f"a build installs {name!r} in {folder}, not in {home}: see install_scripts of "
             "setup.cfg"
@@ -319,9 +387,9 @@ def _why_no_program(package: Package, name: str) -> _MissingProgram:
         message = f"CMakeLists.txt builds {name!r}, but no install(TARGETS ...) names it"
         return _MissingProgram(message)
     installed = []
-    if setup is not None:
+    if setup:
         installed = [*setup.programs, *(copy.target for copy in setup.copies)]
-    paths = {path.rpartition("/")[2]: path for path in reversed(installed)}
+    paths = {last_part(path): path for path in reversed(installed)}
     if name in paths and paths[name] == f"{home}/{name}":
         return _MissingProgram(
             f"a build installs {name!r} without the right to execute it: write "
@@ -336,7 +404,7 @@ def _why_no_program(package: Package, name: str) -> _MissingProgram:
 
 def _is_built_only(setup: Installation | None, name: str) -> bool:
     """Return whether CMake makes a program that no install() names."""
-    for target in setup.targets if setup is not None else ():
+    for target in setup.targets if setup else ():
         is_program = target.kind == "executable" and (target.program or target.name) == name
         if is_program and not target.is_installed:
             return True
@@ -355,7 +423,9 @@ def _missing_program(
 def _lifecycle(workspace: Workspace) -> Facts:
     """Yield the nodes that lifecycle managers are told of, and all that are started."""
     managers = [
-        pair for pair in workspace.launches.nodes if pair[1].executable == "lifecycle_manager"
+        pair
+        for pair in workspace.launches.placed_nodes
+        if pair[1].executable == "lifecycle_manager"
     ]
     if managers:
         yield from _started(workspace)
@@ -363,19 +433,19 @@ def _lifecycle(workspace: Workspace) -> Facts:
         given = collect_parameters(manager, package.open_installed, "lifecycle_manager")
         workspace.charge(len(given.values))
         names = given.values.get("node_names")
-        if given.unknown and names is None:
+        if given.unknown and not names:
             yield Undecided("programs", given.unknown)
-        if names is not None and isinstance(names.value, list):
+        if names and isinstance(names.value, list):
             for name in names.value:
-                yield Use("node", str(name).rpartition("/")[2], names.location, "node_names")
+                yield Use("node", last_part(str(name)), names.location, "node_names")
 
 
 def _started(workspace: Workspace) -> Facts:
     """Yield the nodes that launch files start, and that there may be more."""
-    for _, _, launch in workspace.launches.files:
+    for launch in workspace.launches.every:
         if launch.more:
             yield Open("node", reason=launch.more)
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         name = workspace.code.find_name(node)
         if name is not None:
             yield Definition("node", name, node.location)

@@ -1,12 +1,13 @@
 """Packages that are there: in the workspace, in a release of ROS 2, or under a key of rosdep."""
 
 import re
-from collections.abc import Iterator, Sequence
-from itertools import chain
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator
+from itertools import chain, starmap
 
 from grader.base.errors import NotDecided
-from grader.base.names import near
+from grader.base.names import last_part, near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.installation.manifest_conditions import evaluate_condition
@@ -27,19 +28,15 @@ from grader.workspace.rules.names import (
     Facts,
     Mismatch,
     Mismatches,
-    corrections,
-    cost_of_guess,
+    charge_guess,
 )
-from grader.workspace.rules.rule_table import (
-    NO_KEY,
-    NO_PACKAGE,
-    Rule,
-)
-from grader.workspace.rules.used_packages import calls_in, named_in_robots
+from grader.workspace.rules.rule_table import NO_KEY, NO_PACKAGE, Rule, Symptom
+from grader.workspace.rules.used_packages import calls_in, named_in_robots, required_by_cmake
 
-_DEPENDENCY = re.compile(r"<(?P<tag>\w*depend)(?P<attributes>\s[^<>]*)?>\s*(?P<name>[^<>\s]+)\s*</")
-_CONDITION = re.compile(r"\bcondition\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_DEPENDENCY = on_use(r"<(?P<tag>\w*depend)(?P<attributes>\s[^<>]*)?>\s*(?P<name>[^<>\s]+)\s*</")
+_CONDITION = on_use(r"\bcondition\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 _GROUP = "group_depend"
+_OF_ROS = on_use(r"[a-z][a-z0-9]*+(?:_[a-z0-9]++)++")
 _MAX_DIFFERENT = 2  # letters in the length of two similar names
 _MAX_FOUND = 40  # packages of a workspace, beyond which others may not be read
 # Words of names that say nothing of the robot: my_robot_description.
@@ -50,7 +47,7 @@ def provision_facts(workspace: Workspace) -> Facts:
     """Yield the keys that rosdep does not know, and packages that nothing has."""
     for package in workspace.packages:
         manifest = package.manifest
-        if manifest is not None and not manifest.refusals and not package.is_of_ros1:
+        if manifest and not manifest.refusals and not package.is_of_ros1:
             yield from _unknown_keys(workspace, package)
     yield from _absent_packages(workspace)
 
@@ -60,21 +57,22 @@ def _unknown_keys(workspace: Workspace, package: Package) -> Facts:
 
     It is a note where the name may be that of a package that is built from source.
     """
-    assert package.manifest is not None
+    assert package.manifest
     for source in workspace.texts.read_sources(package, (MANIFEST,)):
         if source.path != package.path(MANIFEST):
             continue
         for match in _DEPENDENCY.finditer(source.text):
-            name, condition = match["name"], _CONDITION.search(match["attributes"] or "")
+            name = match["name"]
+            condition = _CONDITION.search(match["attributes"] or "")
             is_left_out = match["tag"] == _GROUP or name not in package.manifest.dependencies
-            if condition is not None:
+            if condition:
                 held = evaluate_condition(condition[1] or condition[2])
                 is_left_out = is_left_out or held is not True
-            if is_left_out or package.find(name) is not None:
+            if is_left_out or package.find(name):
                 continue
             yield Compared("keys")
             wrong = _wrong_key(workspace, name, source.at(match.start("name")))
-            if wrong is not None:
+            if wrong:
                 yield wrong
 
 
@@ -86,6 +84,16 @@ _ROSDEP_KEY = Rule(
     why=(
         "rosdep install stops with 'Cannot locate rosdep definition' and installs none of the "
         "dependencies, which also stops a build in CI."
+    ),
+    symptoms=(
+        Symptom(
+            "rosdep-key",
+            pattern=r"Cannot locate rosdep definition for \[(?P<key>[\w.+-]{1,200}+)\]",
+            source="ros-infrastructure/rosdep 2685b28, src/rosdep2/lookup.py:474",
+            sentence="rosdep knows no such name.",
+            example="cell: Cannot locate rosdep definition for [numpy]",
+            within=("key",),
+        ),
     ),
     wrong="<exec_depend>pyserial</exec_depend>",
     right="<exec_depend>python3-serial</exec_depend>",
@@ -104,13 +112,12 @@ def _wrong_key(workspace: Workspace, name: str, at: Location) -> Mismatch | None
     if name in words.elsewhere:
         message = f"{no_key}: delete the line; {words.elsewhere[name]}"
         return Mismatch(_ROSDEP_KEY, message, at, word=name)
-    own_names = [package.name for package in workspace.packages]
-    workspace.charge(cost_of_guess(len(own_names)))
+    own_names = workspace.own_packages
+    charge_guess(workspace, own_names)
     meant = words.instead.get(name) or near(name, own_names) or _near_key(workspace, name)
     if meant is not None:
-        message = f"{no_key}, so rosdep install stops; did you mean {quoted(meant)}?"
-        either = corrections(name, at, meant)
-        return Mismatch(_ROSDEP_KEY, message, at, corrections=either, word=name)
+        wrong = Mismatch(_ROSDEP_KEY, f"{no_key}, so rosdep install stops", at, word=name)
+        return wrong.meaning(name, meant).offering(name, meant)
     if _is_of_project(name, own_names):
         return None
     message = (
@@ -120,7 +127,7 @@ def _wrong_key(workspace: Workspace, name: str, at: Location) -> Mismatch | None
     return Mismatch(_ROSDEP_KEY, message, at, is_certain=False, word=name)
 
 
-def _is_of_project(name: str, others: Sequence[str]) -> bool:
+def _is_of_project(name: str, others: Iterable[str]) -> bool:
     """Return whether a name begins as that of a package of the workspace: arm_msgs and arm_driver.
 
     Such a package is one of the same project, of which only a part is inspected.
@@ -136,7 +143,7 @@ def _of_other_release(workspace: Workspace, name: str, at: Location) -> Mismatch
     stated = workspace.releases
     if not stated or "rolling" in stated or is_released(name, stated):
         return None  # what Rolling lacks, it may have again
-    if other_name("package", name, {*stated}) is not None:
+    if other_name("package", name, {*stated}):
         return None  # which is said of its own
     having = enumerated([release.title() for release in find_releases(name)])
     wanted = enumerated([release.title() for release in stated], word="or")
@@ -159,11 +166,11 @@ def _near_key(workspace: Workspace, name: str) -> str | None:
     for known in chain(rosdep_keys(), released_packages()):
         if known[0] == first and abs(len(known) - len(name)) <= _MAX_DIFFERENT:
             alike.append(known)
-    workspace.charge(cost_of_guess(len(alike)))
+    charge_guess(workspace, alike)
     return near(name, alike)
 
 
-class _NamedPackage(NamedTuple):
+class _NamedPackage(Named):
     """A package that a file names, and where.
 
     `is_compared` says whether the rule of files compares a similar name.
@@ -185,9 +192,9 @@ def _absent_packages(workspace: Workspace) -> Facts:
         return
     declared: set[str] = set()
     for package in folder.found_packages:
-        if package.manifest is not None:
+        if package.manifest:
             declared |= package.manifest.dependencies
-    seen: set[str] = set()
+    seen = set()
     for package in workspace.packages:
         for named in _named_by(workspace, package):
             if named.name in seen:
@@ -209,21 +216,38 @@ def _named_by(workspace: Workspace, package: Package) -> Iterator[_NamedPackage]
     texts = workspace.texts
     for source in texts.launch_sources(package):
         if source.path in launched:
-            yield from (_NamedPackage(name, at) for name, at in calls_in(source))
+            yield from starmap(_NamedPackage, calls_in(source))
     for source in texts.read_sources(package, (".py", ".cpp", ".hpp")):
         if source.path not in launched:
             for name, at in calls_in(source):
                 yield _NamedPackage(name, at, is_compared=False)
-    yield from (_NamedPackage(name, at) for name, at in named_in_robots(workspace, package))
+    yield from starmap(_NamedPackage, named_in_robots(workspace, package))
+    yield from _required_by_cmake(package)
+
+
+def _required_by_cmake(package: Package) -> Iterator[_NamedPackage]:
+    """Yield the packages with names as those of ROS 2 that CMake certainly has to find."""
+    for required, at in required_by_cmake(package):
+        name = required.name
+        if required.is_for_tests or is_released(name) or _is_of_rosdep(name):
+            continue
+        if _OF_ROS.fullmatch(name):
+            yield _NamedPackage(name, at, is_compared=False)
+
+
+def _is_of_rosdep(name: str) -> bool:
+    """Return whether a key of rosdep has a name of CMake: nlohmann-json-dev for nlohmann_json."""
+    dashed = name.replace("_", "-")
+    return any(dashed in key for key in rosdep_keys())
 
 
 def _may_exist(workspace: Workspace, package: Package, name: str, declared: set[str]) -> bool:
     """Return whether something says that a package exists."""
-    if package.find(name) is not None or is_released(name) or name in declared:
+    if package.find(name) or is_released(name) or name in declared:
         return True
     if name in package.installed_besides or not re.fullmatch(r"[a-z]\w*", name):
         return True
-    folders = [other.folder.rpartition("/")[2] for other in workspace.folder.found_packages]
+    folders = [last_part(other.folder) for other in workspace.folder.found_packages]
     row = package_row(name)
     if row.programs or row.launch or name in folders or workspace.folder.absent_submodules:
         return True
@@ -270,30 +294,27 @@ Node(package='rviz2', executable='rviz2',
 
 def _absent(workspace: Workspace, named: _NamedPackage) -> Mismatches:
     """Yield that a package is not there, unless the rule of files says it."""
-    name, at = named.name, named.location
-    names = [package.name for package in workspace.packages]
-    workspace.charge(cost_of_guess(len(names)))
+    name = named.name
+    at = named.location
+    names = workspace.own_packages
+    charge_guess(workspace, names)
     meant = near(name, names)
     if meant is not None and named.is_compared:
         return
     meant = meant or _package_meant(name, names)
     if meant is not None:
-        message = f"there is no package {quoted(name)}; did you mean {quoted(meant)}?"
-        either = corrections(name, at, meant)
-        yield Mismatch(_PACKAGE_EXISTS, message, at, corrections=either, word=name)
+        wrong = Mismatch(_PACKAGE_EXISTS, f"there is no package {quoted(name)}", at, word=name)
+        yield wrong.meaning(name, meant)
         return
     message = (
         f"neither the workspace nor a release of ROS 2 ({released_date()}) has the package "
         f"{quoted(name)}, and no package.xml declares it"
     )
-    released = _near_key(workspace, name)
-    if released is not None:
-        message += f"; did you mean {quoted(released)}?"
-    either = corrections(name, at, released)
-    yield Mismatch(_PACKAGE_EXISTS, message, at, None, False, either, word=name)
+    wrong = Mismatch(_PACKAGE_EXISTS, message, at, is_certain=False, word=name)
+    yield wrong.meaning(name, _near_key(workspace, name))
 
 
-def _package_meant(name: str, names: Sequence[str]) -> str | None:
+def _package_meant(name: str, names: Iterable[str]) -> str | None:
     """Return the package of the workspace that a name surely means, which is not similar.
 
     It is the only one with the same last word, as `description`, if it has another word

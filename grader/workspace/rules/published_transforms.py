@@ -3,10 +3,10 @@
 A frame has one parent, which one program publishes; and frames form a tree.
 """
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import hypot
 
+from grader.base.patterns import on_use
 from grader.base.text import quoted
 from grader.base.transforms import minus, turn_between
 from grader.workspace.graph.launch_graph import GraphTransform
@@ -14,17 +14,18 @@ from grader.workspace.graph.launched_transforms import transforms_in
 from grader.workspace.graph.transform_edges import is_zero_rotation
 from grader.workspace.model.text_files import MAX_YAML
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.workspace.rules.names import Compared, Facts, Mismatch, Mismatches, warning
 from grader.workspace.rules.rule_table import (
     OTHER_VALUE,
     WRONG_TRANSFORM,
     Rule,
 )
+from grader.workspace.rules.shared_symptoms import TWO_PUBLISHERS
 
 _LETTERS_A_PART = 1_000  # that are searched for a switch
 _SAME_PLACE, _SAME_ANGLE = 1e-3, 0.1  # metres, degrees
 # A parameter, or an attribute that is named as a switch: self.publish_tf.
-_SWITCH = re.compile(
+_SWITCH = on_use(
     r"get_parameter|(?:publish|broadcast|send|enable|use)\w{0,20}_(?:tf|transform|odom)"
 )
 
@@ -49,9 +50,9 @@ Node(package='tf2_ros', executable='static_transform_publisher',
 )
 
 
-def transform_facts(workspace: Workspace) -> Iterator[Fact]:
+def transform_facts(workspace: Workspace) -> Facts:
     """Yield transforms that two programs publish, frames with two parents, and cycles."""
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         if is_zero_rotation(node):
             message = (
                 "the quaternion of a static_transform_publisher is 0 0 0 0, which is no "
@@ -60,8 +61,8 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
             yield Mismatch(_TRANSFORM_ROTATION, message, node.location)
     has_robots = len(workspace.robots.known) > 1  # of which one may run in Gazebo
     for number in range(len(workspace.launches.roots)):
-        edges: list[GraphTransform] = []
-        joints: dict[str, GraphTransform] = {}
+        edges = []
+        joints = {}
         for edge in transforms_in(workspace, number):
             if edge.source == "robot" and edge.is_certain:
                 joints[edge.child] = edge
@@ -94,6 +95,7 @@ _TRANSFORM_OWNER = Rule(
         "The frame jumps between two poses as each program publishes. The robot flickers in "
         "RViz, and localization and navigation get worse."
     ),
+    symptoms=(TWO_PUBLISHERS,),
     wrong="""
 Node(package='robot_localization', executable='ekf_node', name='wheels'),
 Node(package='robot_localization', executable='ekf_node', name='imu'),
@@ -108,7 +110,7 @@ Node(
 )
 
 
-def _owned_twice(edges: Sequence[GraphTransform]) -> Iterator[Mismatch]:
+def _owned_twice(edges: Sequence[GraphTransform]) -> Mismatches:
     """Yield the frames that a second program places; two static transforms of a pair are one."""
     first: dict[str, GraphTransform] = {}
     for edge in edges:
@@ -126,7 +128,8 @@ def _owned_twice(edges: Sequence[GraphTransform]) -> Iterator[Mismatch]:
                 f"{before.by} in {quoted(before.parent)} ({before.location.file_and_line}): a "
                 "frame has one parent"
             )
-        yield warning(_TRANSFORM_OWNER, message, edge.location, before.location)
+        wrong = warning(_TRANSFORM_OWNER, message, edge.location, before.location)
+        yield wrong._replace(names=(edge.child,))
 
 
 def _are_one(one: GraphTransform, other: GraphTransform) -> bool:
@@ -138,11 +141,11 @@ def _are_one(one: GraphTransform, other: GraphTransform) -> bool:
 
 def _children_of_robot(
     edges: Sequence[GraphTransform], joints: Mapping[str, GraphTransform]
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield the programs that place a link of the robot which a joint places."""
     for edge in edges:
         joint = joints.get(edge.child)
-        if joint is None or (edge.source == "code" and joint.needs):
+        if not joint or (edge.source == "code" and joint.needs):
             continue  # where nothing publishes the states of joints, code may do the work of these
         if edge.is_static:  # with another parent it is a mistake of frames
             yield from _elsewhere(edge, joint)
@@ -152,7 +155,10 @@ def _children_of_robot(
             f"places it in {quoted(joint.parent)}: a frame has one parent"
         )
         is_certain = edge.source != "code"
-        yield Mismatch(_TRANSFORM_OWNER, message, edge.location, joint.location, is_certain)
+        at = edge.named_at or edge.location
+        yield Mismatch(
+            _TRANSFORM_OWNER, message, at, joint.location, is_certain, names=(edge.child,)
+        )
 
 
 _STATIC_POSE = Rule(
@@ -182,7 +188,7 @@ Node(package='tf2_ros', executable='static_transform_publisher',
 )
 
 
-def _elsewhere(edge: GraphTransform, joint: GraphTransform) -> Iterator[Mismatch]:
+def _elsewhere(edge: GraphTransform, joint: GraphTransform) -> Mismatches:
     """Yield that a static transform places a link elsewhere than its fixed joint."""
     if edge.parent != joint.parent or edge.pose is None or joint.pose is None:
         return
@@ -221,12 +227,12 @@ Node(package='tf2_ros', executable='static_transform_publisher',
 )
 
 
-def _cycles(edges: Sequence[GraphTransform]) -> Iterator[Mismatch]:
+def _cycles(edges: Sequence[GraphTransform]) -> Mismatches:
     """Yield the cycles of frames, each once, at a transform that the robot does not have."""
     above = {edge.child: edge for edge in edges}
-    seen: set[str] = set()
+    seen = set()
     for start in above:
-        path: list[str] = []
+        path = []
         frame = start
         while frame in above and frame not in seen:
             seen.add(frame)

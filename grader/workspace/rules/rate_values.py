@@ -4,15 +4,14 @@ They are those of controllers, and of the lidars that Nav2 reads.
 """
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
-from grader.ros.config.yaml_values import sections_in
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.xml.parsing import Element
-from grader.workspace.graph.gazebo_topics import roots
+from grader.workspace.graph.gazebo_topics import elements_in
 from grader.workspace.graph.started_controllers import (
     defined_controllers,
     parameters_of_controllers,
@@ -31,11 +30,12 @@ from grader.workspace.rules.rule_table import (
 )
 
 _LIDARS = ("lidar", "gpu_lidar", "ray", "gpu_ray")
-_SOURCES, _SCAN = "observation_sources", "LaserScan"
+_SOURCES = "observation_sources"
+_SCAN = "LaserScan"
 _ROUNDING = 1e-6
 
 
-class _StatedNumber(NamedTuple):
+class _StatedNumber(Named):
     """A positive number that a file says of something, and its place."""
 
     of: str
@@ -53,9 +53,9 @@ def rate_facts(workspace: Workspace) -> Facts:
     fastest = _largest(rate for rate, _ in rates)
     for name, source in _scan_sources(workspace):
         yield Compared("values")
-        if farthest is not None:
+        if farthest:
             yield from _too_far(_number_in(source, name, "obstacle_max_range"), farthest)
-        if fastest is not None:
+        if fastest:
             yield from _too_often(_number_in(source, name, "expected_update_rate"), fastest)
 
 
@@ -91,7 +91,7 @@ obstacle_layer:
 
 def _too_far(asked: _StatedNumber | None, lidar: _StatedNumber) -> Mismatches:
     """Yield that a costmap marks obstacles farther away than any lidar measures."""
-    if asked is not None and asked.value > lidar.value + _ROUNDING:
+    if asked and asked.value > lidar.value + _ROUNDING:
         message = (
             f"{asked.of}.obstacle_max_range is {asked.value:g} m; the lidar {quoted(lidar.of)} "
             f"measures up to {lidar.value:g} m"
@@ -128,7 +128,7 @@ obstacle_layer:
 def _too_often(asked: _StatedNumber | None, lidar: _StatedNumber) -> Mismatches:
     """Yield that a costmap expects scans more often than any lidar measures."""
     period = 1.0 / lidar.value
-    if asked is not None and asked.value < period - _ROUNDING:
+    if asked and asked.value < period - _ROUNDING:
         message = (
             f"{asked.of}.expected_update_rate is {asked.value:g} s; the lidar {quoted(lidar.of)} "
             f"measures every {period:.4g} s"
@@ -169,11 +169,11 @@ def _rates_of_controllers(workspace: Workspace) -> Facts:
     """Yield the controllers that should publish more often than their manager updates them."""
     sections = parameters_of_controllers(workspace)
     update = _number_in(sections.get(MANAGER), MANAGER, "update_rate")
-    if update is None:
+    if not update:
         return
     for controller in defined_controllers(workspace):
         asked = _number_in(sections.get(controller.name), controller.name, "publish_rate")
-        if asked is None:
+        if not asked:
             continue
         yield Compared("values")
         if asked.value > update.value + _ROUNDING:
@@ -186,9 +186,9 @@ def _rates_of_controllers(workspace: Workspace) -> Facts:
 
 def _number_in(section: YamlNode | None, name: str, key: str) -> _StatedNumber | None:
     """Return the positive number of a parameter, where it is given."""
-    node = section.get(key) if section is not None else None
+    node = section.get(key) if section else None
     value = finite_number(node.text) if node is not None else None
-    if node is None or value is None or value <= 0.0:
+    if not node or value is None or value <= 0.0:
         return None
     return _StatedNumber(name, value, node.location)
 
@@ -203,26 +203,20 @@ def _ranges_of_lidars(workspace: Workspace) -> Iterator[_StatedNumber]:
 
 def _numbers_of_lidars(workspace: Workspace, tag: str) -> Iterator[tuple[_StatedNumber, Element]]:
     """Yield the positive numbers in elements of the simulated lidars, with the elements."""
-    for root, place in roots(workspace):
-        for sensor in root.iter("sensor"):
-            for element in sensor.iter(tag) if sensor.get("type") in _LIDARS else ():
-                value = finite_number(element.text)
-                if value is not None and value > 0.0:
-                    yield _StatedNumber(sensor.get("name", ""), value, place(element)), element
+    for sensor, place in elements_in(workspace, "sensor"):
+        for element in sensor.iter(tag) if sensor.get("type") in _LIDARS else ():
+            value = finite_number(element.text)
+            if value is not None and value > 0.0:
+                yield _StatedNumber(sensor.get("name", ""), value, place(element)), element
 
 
 def _scan_sources(workspace: Workspace) -> Iterator[tuple[str, YamlNode]]:
     """Yield the sections of costmaps' observation sources that are scans."""
-    for _, tree in workspace.installed.trees:
-        for _, section in sections_in(tree):
-            for _, layer in section.pairs:
-                yield from _list_scans(layer)
-
-
-def _list_scans(layer: YamlNode) -> Iterator[tuple[str, YamlNode]]:
-    """Yield the observation sources of a layer that are scans, with their names."""
-    listed = layer.get(_SOURCES)
-    for name in (listed.text or "").split() if listed is not None else ():
-        source, kind = layer.get(name), layer.get(name, "data_type")
-        if source is not None and kind is not None and kind.text == _SCAN:
-            yield name, source
+    for _, section in workspace.installed.sections:
+        for _, layer in section.pairs:
+            listed = layer.get(_SOURCES)
+            for name in (listed.text or "").split() if listed else ():
+                source = layer.get(name)
+                kind = layer.get(name, "data_type")
+                if source is not None and kind is not None and kind.text == _SCAN:
+                    yield name, source

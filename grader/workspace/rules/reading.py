@@ -4,7 +4,6 @@ from collections.abc import Callable, Collection, Iterator
 from functools import cache, lru_cache
 from importlib import import_module
 from itertools import chain
-from typing import NamedTuple
 
 from grader.base.errors import NotDecided
 from grader.base.source import Location
@@ -25,12 +24,8 @@ from grader.workspace.rules.rule_table import AnyFamily, list_readers
 from grader.workspace.rules.unused import unused_files
 
 # The parts of a fact, and of a mismatch, for which similar names are searched.
-_OF_FACT, _OF_MISMATCH = 3, 1_000
-
-
-class _Facts(NamedTuple):
-    facts: list[Fact]
-    why_not_all: NotDecided | None = None
+_OF_FACT = 3
+_OF_MISMATCH = 1_000
 
 
 @cache
@@ -53,7 +48,7 @@ def read_agreement(workspace: Workspace) -> Agreement:
     facts, error = facts_once(workspace)
     unused: tuple[Location, ...] = ()
     try:
-        if error is not None:
+        if error:
             raise error
         agreed = agreement(facts, workspace.charge)
         unused = tuple(unused_files(workspace))
@@ -64,18 +59,18 @@ def read_agreement(workspace: Workspace) -> Agreement:
     return agreed._replace(families=families, unused=unused)
 
 
-@lru_cache(maxsize=2)
-def facts_once(workspace: Workspace) -> _Facts:
+@lru_cache(maxsize=3)  # an editor also asks the last state without errors
+def facts_once(workspace: Workspace) -> tuple[list[Fact], NotDecided | None]:
     """Return what files define and use, as far as the budget of the workspace allows.
 
-    It is what is read before the budget is spent.
+    Without all of them there is the error of the budget.
     """
     facts: list[Fact] = []
     try:
         facts += read_facts(workspace)
     except NotDecided as error:
-        return _Facts(facts, error)
-    return _Facts(facts)
+        return facts, error
+    return facts, None
 
 
 def wrong_names(

@@ -4,9 +4,9 @@ They have no header where a synchroniser compares times, or are images with an e
 cannot be converted.
 """
 
-import re
 from collections.abc import Mapping, Sequence
 
+from grader.base.patterns import on_use
 from grader.base.text import quoted
 from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.package_tables import colour_encodings
@@ -28,7 +28,7 @@ from grader.workspace.rules.rule_table import (
 
 _HEADER = "header"
 # An encoding without colours: the type of a channel, and how many there are.
-_PLAIN_ENCODING = re.compile(r"(?:8U|8S|16U|16S|32S|32F|64F)(?:C(\d{1,2}))?")
+_PLAIN_ENCODING = on_use(r"(?:8U|8S|16U|16S|32S|32F|64F)(?:C(\d{1,2}))?")
 # What the synchronisers of Python do with messages without a header. Those of C++ take a time of 0.
 # Up to Jazzy it has another type of clock, and rclcpp compares no such times (message_traits.h).
 _EFFECTS = {
@@ -58,10 +58,12 @@ _MESSAGE_HEADER = Rule(
     wrong="""
 filters = [Subscriber(self, TwistStamped, 'speed'), Subscriber(self, Twist, 'cmd_vel')]
 self.pairs = ApproximateTimeSynchronizer(filters, 10, 0.1)
+self.pairs.registerCallback(self.receive)
 """,
     right="""
 filters = [Subscriber(self, TwistStamped, 'speed'), Subscriber(self, TwistStamped, 'cmd_vel')]
 self.pairs = ApproximateTimeSynchronizer(filters, 10, 0.1)
+self.pairs.registerCallback(self.receive)
 """,
     frame="start/pilot.py",
 )
@@ -87,12 +89,12 @@ def _has_header(workspace: Workspace, name: str) -> bool | None:
     """Return whether messages of a type have a header; None where this is not known."""
     package, _, own_name = name.partition(".")
     interfaces = workspace.code.interfaces.get(package)
-    if interfaces is not None:
+    if interfaces:
         own_type = interfaces.types.get(own_name)
         interface = own_type.interface if own_type is not None and interfaces.is_complete else None
     else:
         interface = (known_interfaces(package, workspace.releases) or {}).get(own_name)
-    if interface is None or not interface.sections:
+    if not interface or not interface.sections:
         return None
     return _HEADER in interface.sections[0].fields
 
@@ -135,7 +137,12 @@ def _other_encodings(workspace: Workspace) -> Facts:
         for subscription in subscriptions:
             asked = subscription.endpoint.encodings
             workspace.charge(len(made) * len(asked))
-            yield from _not_converted(subscription.name, made, asked)
+            # Of several conversions, one may be for these images.
+            are_lost = all(_is_lost(each.name, other.name) for each in made for other in asked)
+            for encoding in asked:
+                yield Compared("messages")
+                if are_lost:
+                    yield _cannot_convert(subscription.name, made[0], encoding)
 
 
 def _by_launch_and_topic(
@@ -144,17 +151,6 @@ def _by_launch_and_topic(
     """Return the ends of own code that certainly are opened, by launch and topic."""
     ends = make_graph(workspace).certain(kind, "code")
     return grouped(ends, lambda end: (end.launch, end.name))
-
-
-def _not_converted(
-    topic: str, made: Sequence[ImageEncoding], asked: Sequence[ImageEncoding]
-) -> Facts:
-    """Yield the conversions of a callback that fail, unless it has one that may succeed."""
-    are_lost = all(_is_lost(each.name, encoding.name) for each in made for encoding in asked)
-    for encoding in asked:
-        yield Compared("messages")
-        if are_lost:
-            yield _cannot_convert(topic, made[0], encoding)
 
 
 _IMAGE_ENCODING = Rule(
@@ -187,7 +183,8 @@ def _is_lost(made: str, asked: str) -> bool:
     It is one of depths to colours, or to another number of channels.
     """
     colours = colour_encodings()
-    before, after = _channels(made, colours), _channels(asked, colours)
+    before = _channels(made, colours)
+    after = _channels(asked, colours)
     if made == asked or before is None or after is None:
         return False
     if made in colours and asked in colours:
@@ -200,4 +197,4 @@ def _channels(encoding: str, colours: Mapping[str, int]) -> int | None:
     if encoding in colours:
         return colours[encoding]
     plain = _PLAIN_ENCODING.fullmatch(encoding)
-    return int(plain[1] or 1) if plain is not None else None
+    return int(plain[1] or 1) if plain else None

@@ -4,28 +4,30 @@ import re
 from collections.abc import Iterator, Mapping
 
 from grader.base.errors import NotDecided
+from grader.base.names import first_part, last_part
+from grader.base.patterns import on_use
 from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.releases import NameKind, names_without, other_name
-from grader.ros.launch.launch_model import StartedNode
-from grader.ros.nodes.node_facts import NodeFacts
+from grader.ros.xml.elements import first_text
+from grader.workspace.graph.graph import make_graph
+from grader.workspace.graph.launch_graph import connections_in
 from grader.workspace.graph.started_controllers import defined_controllers
 from grader.workspace.model.stated_releases import deciding_launch_files, releases_in_path
+from grader.workspace.model.text_files import CPP_ENDINGS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.model.workspace_folder import TOO_MUCH
 from grader.workspace.rules.name_problems import name_problems
 from grader.workspace.rules.names import Agreement
 from grader.workspace.rules.reading import read_agreement
-from grader.workspace.rules.rule_table import (
-    OTHER_RELEASE,
-    UNCOMPARED,
-    Rule,
+from grader.workspace.rules.rule_table import OTHER_RELEASE, UNCOMPARED, Rule
+from grader.workspace.rules.shared_symptoms import (
+    CLASS_DOES_NOT_EXIST,
 )
 
-_DEPENDENCY = re.compile(r"<\w*depend>\s*([\w-]+)\s*</")
-_CPP = (".cpp", ".cc", ".cxx", ".hpp", ".h")
+_DEPENDENCY = on_use(r"<\w*depend>\s*([\w-]+)\s*</")
 _PLUGIN_KEYS = ("plugin", "robot_model_type")
 
 
@@ -70,6 +72,7 @@ _NAME_RELEASE = Rule(
         "The installed packages do not have the name: ros2 launch or pluginlib reports that it "
         "is not found, or messages go to a topic without a reader."
     ),
+    symptoms=(CLASS_DOES_NOT_EXIST,),
     wrong="""
 planner_plugins: [GridBased]
 GridBased:
@@ -102,7 +105,7 @@ def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Proble
                 continue
             releases = {*workspace.releases, *releases_in_path(at.path)}
             other = other_name(kind, name, releases, shown=owner)
-            if other is not None:
+            if other:
                 problem = _NAME_RELEASE.problem(other.message, at, kind)
                 problems.setdefault((other.message, at.path), problem)
     return sorted(
@@ -120,23 +123,23 @@ _Use = tuple[NameKind, str, Location, str]  # with the start of the name that is
 
 def _uses_in_robots(workspace: Workspace) -> Iterator[_Use]:
     """Yield the plugins of Gazebo and of ros2_control that robots load, but for own ones."""
-    own_packages = [package.name for package in workspace.packages]
+    own_packages = workspace.own_packages
     for robot in workspace.robots.known:
         for element in robot.root.iter("plugin"):
-            name = element.get("filename", "") or (element.text or "").strip()
-            package = name.partition("/")[0].removeprefix("lib").removesuffix(".so")
+            name = element.get("filename", "") or first_text(element)
+            package = first_part(name).removeprefix("lib").removesuffix(".so")
             if package not in own_packages:
                 yield "plugin", name, robot.place(element), ""
 
 
 def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
     """Yield the plugins, controllers and parameters in YAML files."""
-    types: dict[str, str] = {}
+    types = {}
     for controller in defined_controllers(workspace):
         types[controller.name] = controller.type.text or ""
         if not workspace.texts.has_plugin(types[controller.name]):
             yield "controller", types[controller.name], controller.type.location, ""
-    for _, tree in workspace.installed.trees:
+    for tree in workspace.installed.trees:
         for value in values_in(tree):
             if value.keys and value.keys[-1] in _PLUGIN_KEYS:
                 yield "plugin", value.node.text or "", value.node.location, ""
@@ -146,7 +149,7 @@ def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
 def _parameters_in(tree: YamlNode, types: Mapping[str, str]) -> Iterator[_Use]:
     """Yield the parameters in a YAML file, of the types that controllers have by their names."""
     for keys, section in sections_in(tree):
-        name = keys[-1].rpartition("/")[2] if keys else ""
+        name = last_part(keys[-1]) if keys else ""
         owner = f"{types.get(name, name)}/"
         for value in values_in(section):
             yield "parameter", owner + ".".join(value.keys), value.node.location, owner
@@ -154,27 +157,40 @@ def _parameters_in(tree: YamlNode, types: Mapping[str, str]) -> Iterator[_Use]:
 
 def _uses_in_launch_files(workspace: Workspace) -> Iterator[_Use]:
     """Yield the packages, programs and launch files in launch files."""
-    for package, node in workspace.launches.nodes:
-        if package.find(node.package) is None:
+    for package, node in workspace.launches.placed_nodes:
+        if not package.find(node.package):
             yield "package", node.package, node.location, ""
             owner = f"{node.package}/"
             yield "program", f"{owner}{node.executable}", node.location, owner
     for package, _, launch in workspace.launches.files:
         for passed in launch.passed:
             parts = passed.path.split("/")
-            if parts[0] == "share" and len(parts) > 1 and package.find(parts[1]) is None:
+            if parts[0] == "share" and len(parts) > 1 and not package.find(parts[1]):
                 yield "package", parts[1], passed.location, ""
                 owner = f"{parts[1]}/"
                 yield "launch file", owner + parts[-1], passed.location, owner
 
 
 def _topics_of_controllers(workspace: Workspace) -> Iterator[_Use]:
-    """Yield the topics that are those of controllers, by their names."""
+    """Yield the topics that are those of controllers, by their names.
+
+    One that something publishes and something else reads needs no controller.
+    """
     types = {defined.name: defined.type.text or "" for defined in defined_controllers(workspace)}
-    for topic, at in _topics(workspace):
+    met = _met_topics(workspace) if types else set()
+    for topic, at in _topics(workspace) if types else ():
         controller, _, last = topic.strip("/ ").rpartition("/")
-        owner = f"{types.get(controller.rpartition('/')[2], '')}/"
-        yield "topic", owner + last, at, owner
+        owner = types.get(last_part(controller), "")
+        if owner and f"/{controller}/{last}" not in met:
+            yield "topic", f"{owner}/{last}", at, f"{owner}/"
+
+
+def _met_topics(workspace: Workspace) -> set[str]:
+    """Return the topics on which the nodes of a launch file meet."""
+    met = set[str]()
+    for launched in make_graph(workspace).launched:
+        met.update(connection.name for connection in connections_in(launched))
+    return met
 
 
 def _topics(workspace: Workspace) -> Iterator[tuple[str, Location]]:
@@ -183,29 +199,23 @@ def _topics(workspace: Workspace) -> Iterator[tuple[str, Location]]:
         for element in robot.root.iter("remapping"):
             for topic in (element.text or "").split(":="):
                 yield topic, robot.place(element)
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         for names in node.remaps or ():
             yield from ((topic, node.location) for topic in names)
         facts = workspace.code.own_node(node)
-        if facts is not None:
-            yield from _topics_of_node(node, facts)
-
-
-def _topics_of_node(node: StartedNode, facts: NodeFacts) -> Iterator[tuple[str, Location]]:
-    """Yield the topics that the code of a node opens, as the launch file names them."""
-    for endpoint in facts.endpoints:
-        yield node.topic(endpoint.name or "") or "", endpoint.location
+        for endpoint in facts.endpoints if facts else ():
+            yield node.topic(endpoint.name or "") or "", endpoint.location
 
 
 def _declared(workspace: Workspace) -> Iterator[_Use]:
     """Yield the packages that package.xml declares without a condition."""
     for package in workspace.packages:
         manifest = package.manifest
-        if manifest is None:
+        if not manifest:
             continue
         for match in _DEPENDENCY.finditer(manifest.source.text):
             name = match[1]
-            if name in manifest.dependencies and package.find(name) is None:
+            if name in manifest.dependencies and not package.find(name):
                 yield "package", name, manifest.source.at(match.start(1)), ""
 
 
@@ -215,11 +225,10 @@ def _uses_in_code(workspace: Workspace) -> Iterator[_Use]:
     if not names:
         return
     pattern = re.compile(rf"//[^\n]*|/\*.*?(?:\*/|\Z)|\b({'|'.join(names)})\b", re.DOTALL)
-    for package in workspace.packages:
-        for source in workspace.texts.read_sources(package, _CPP):
-            for match in pattern.finditer(source.text):
-                if match[1] is not None:  # not of a comment
-                    yield "class", match[1], source.at(match.start()), ""
+    for source in workspace.texts.every_source(CPP_ENDINGS):
+        for match in pattern.finditer(source.text):
+            if match[1] is not None:  # not of a comment
+                yield "class", match[1], source.at(match.start()), ""
 
 
 _READERS = (

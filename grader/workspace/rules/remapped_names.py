@@ -1,24 +1,25 @@
 """Remappings of names that no node has, and how many topics of own code are compared."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
+from grader.base.grouping import Strings
 from grader.base.text import enumerated
 from grader.ros.launch.launch_model import StartedNode
 from grader.workspace.graph.code_ends import opened_by
 from grader.workspace.graph.graph import Graph, make_graph
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Counted, Definition, Fact, Use
+from grader.workspace.rules.names import Counted, Definition, Facts, Use
 
 _MAX_NAMED = 3  # programs
 
 
-def remapping_facts(workspace: Workspace) -> Iterator[Fact]:
+def remapping_facts(workspace: Workspace) -> Facts:
     """Yield the names that nodes have, and those that remappings of one node alone replace.
 
     It is said as well how many topics are compared.
     """
     owners = _owners_of_rules(workspace)
-    read: set[object] = set()
+    read = set()
     for _, node in workspace.launches.launched:
         key = (node.package, node.executable, node.location, node.remaps)
         if node.when is not False and key not in read:
@@ -28,10 +29,10 @@ def remapping_facts(workspace: Workspace) -> Iterator[Fact]:
     yield _count(make_graph(workspace))
 
 
-def _owners_of_rules(workspace: Workspace) -> Mapping[tuple[str, ...], list[StartedNode]]:
+def _owners_of_rules(workspace: Workspace) -> Mapping[Strings, list[StartedNode]]:
     """Return of each remapping the first two nodes that have it."""
-    owners: dict[tuple[str, ...], list[StartedNode]] = {}
-    for _, node in workspace.launches.nodes:
+    owners: dict[Strings, list[StartedNode]] = {}
+    for node in workspace.launches.nodes:
         for rule in node.remaps or ():
             of_rule = owners.setdefault(rule, [])
             if len(of_rule) < 2 and not any(node is owner for owner in of_rule):
@@ -39,17 +40,15 @@ def _owners_of_rules(workspace: Workspace) -> Mapping[tuple[str, ...], list[Star
     return owners
 
 
-def _remappings(
-    workspace: Workspace, node: StartedNode, rules: Sequence[tuple[str, ...]]
-) -> Iterator[Fact]:
+def _remappings(workspace: Workspace, node: StartedNode, rules: Sequence[Strings]) -> Facts:
     """Yield the names that a node has, and those that these remappings, of it alone, replace.
 
     A node that may open others, as by a computed name, may have each of them.
     """
     facts = workspace.code.own_node(node)
-    if facts is None or node.remaps is None:
+    if not facts or node.remaps is None:
         return
-    owner = f"{node.package}/{node.executable} {node.location.file_and_line}"
+    owner = f"{node.program_path} {node.location.file_and_line}"
     for endpoint in facts.endpoints:
         if endpoint.name is not None:
             yield Definition("topic", _bare(endpoint.name), endpoint.location, owner)
@@ -78,7 +77,9 @@ def _count(graph: Graph) -> Counted:
     """
     ends = {"publisher": graph.names_opened("subscription")}
     ends["subscription"] = graph.names_opened("publisher")
-    total, known, compared = 0, 0, 0
+    total = 0
+    known = 0
+    compared = 0
     for end in graph.ends:
         if end.source == "code" and end.kind in ends:
             total += 1
@@ -99,8 +100,8 @@ def _unread_programs(workspace: Workspace) -> list[str]:
     programs = set()
     for _, node in workspace.launches.launched:
         owner = workspace.find_package(node)
-        if node.when is False or owner is None or workspace.code.own_node(node) is not None:
+        if node.when is False or not owner or workspace.code.own_node(node):
             continue
-        if owner.has_program(node.package, node.executable):
+        if owner.has_program(*node.program):
             programs.add(node.executable)
     return sorted(programs)

@@ -5,6 +5,8 @@ A launch file gives such a node another name.
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from grader.base.grouping import Strings
+from grader.base.names import last_part
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
@@ -13,17 +15,17 @@ from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import is_section_key
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Compared, Fact, Mismatch, corrections
+from grader.workspace.rules.names import Compared, Facts, Mismatch
 from grader.workspace.rules.rule_table import (
     NO_PARAMETER,
     Rule,
 )
 
 _ANY_NAMES = ("*", "**")
-_Keys = Mapping[str, tuple[str, ...]]  # of the sections of a file, by the full names that they are
+_Keys = Mapping[str, Strings]  # of the sections of a file, by the full names that they are
 
 
-def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
+def renamed_node_facts(workspace: Workspace) -> Facts:
     """Yield the sections named after a node's name in its program, where it is renamed.
 
     The launch file renames the node: rcl compares the new name, so the node gets none of them.
@@ -32,16 +34,17 @@ def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
     components are not known. The nodes of a launch file to which a file is passed may read its
     sections.
     """
-    with_unknown: set[int] = set()
-    for launch, (_, root) in enumerate(workspace.launches.roots):
-        if any(component.node is None for component in root.components):
+    with_unknown = set()
+    for launch, root in enumerate(workspace.launches.outermost):
+        if any(not component.node for component in root.components):
             with_unknown.add(launch)
     for (path, launch), nodes in _nodes_by_file(workspace).items():
-        tree, others = workspace.installed.yaml.get(path), workspace.parameters.files[path]
+        tree = workspace.installed.find_tree(path)
+        others = workspace.parameters.files[path]
         workspace.charge(len(others))
         has_container = any(package_row(node.package).holds_nodes for node in others)
         is_open = has_container or path in workspace.installed.passed_files
-        if not isinstance(tree, YamlNode) or launch in with_unknown or is_open:
+        if not tree or launch in with_unknown or is_open:
             continue
         elsewhere = _names_read(workspace, others)
         if with_unknown:
@@ -80,12 +83,12 @@ def _unread_sections(
         names = (
             elsewhere if any(is_section_key(section_key, full) for section_key in keys) else read
         )
-        if key is not None and None not in names and key.rpartition("/")[2] not in names:
+        if key is not None and None not in names and last_part(key) not in names:
             unread.append((node, key))
     for node, key in unread:
         yield Compared("parameters")
         at = tree.key_location(*keys[key])
-        is_read_elsewhere = key.rpartition("/")[2] in elsewhere
+        is_read_elsewhere = last_part(key) in elsewhere
         yield _unread_section(node, key, at, is_only=len(unread) == 1, is_read=is_read_elsewhere)
 
 
@@ -127,14 +130,15 @@ def _unread_section(
     node: StartedNode, key: str, at: Location, *, is_only: bool, is_read: bool
 ) -> Mismatch:
     """Return that a node ignores a section, which another node of another launch file may read."""
-    old, name = key.rpartition("/")[2], node.node_name or ""
+    old = last_part(key)
+    name = node.node_name or ""
     advice = "add a section" if is_read else "rename the section to"
     message = (
         f"the launch file names this node {name!r}, so it ignores the section {quoted(old)}, "
         f"its name in its program: {advice} {quoted(name)}"
     )
-    either = corrections(old, at, name if is_only and not is_read else None)
-    return Mismatch(_NODE_SECTION, message, at, node.location, node.when is True, either)
+    wrong = Mismatch(_NODE_SECTION, message, at, node.location, node.when is True)
+    return wrong.correcting(old, name if is_only and not is_read else None)
 
 
 def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str | None]:
@@ -142,7 +146,7 @@ def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str |
 
     None is among them where one is not known.
     """
-    names: set[str | None] = set()
+    names = set()
     for name in {workspace.code.find_name(node) for node in nodes}:
         names |= {name, *workspace.code.find_children(name or "")}
     return names
@@ -153,13 +157,15 @@ def key_of_program_name(workspace: Workspace, node: StartedNode, keys: _Keys) ->
 
     The result is None where there is none, or one for the name that it has.
     """
-    name, old = node.node_name, workspace.code.name_in_program(node)
+    name = node.node_name
+    old = workspace.code.name_in_program(node)
     if not name or not old or name == old or node.namespace is None:
         return None
-    full, full_name = node.full_name(name), node.full_name(old)
+    full = node.full_name(name)
+    full_name = node.full_name(old)
     found_key = None
     for key in keys:
-        last = key.rpartition("/")[2]
+        last = last_part(key)
         if last == name or (last not in _ANY_NAMES and is_section_key(key, full)):
             return None
         if last == old and is_section_key(key, full_name):

@@ -54,7 +54,7 @@ def repeated_interface_facts(workspace: Workspace) -> Facts:
         owners: dict[str, Element] = {}
         for system in robot.systems:
             yield Compared("controllers")
-            repeated: list[str] = []
+            repeated = []
             for joint in system.iterchildren("joint"):
                 for interface in joint.iterchildren("command_interface"):
                     name = f"{joint.get('name', '')}/{interface.get('name', '')}"
@@ -67,5 +67,6 @@ def repeated_interface_facts(workspace: Workspace) -> Facts:
                     f"{repeated[0]!r}, which {first.get('name', '')!r} has as well: one robot has "
                     "each once"
                 )
-                at, other = robot.place(system), robot.place(first)
+                at = robot.place(system)
+                other = robot.place(first)
                 yield warning(_INTERFACE_ONCE, message, at, other)

@@ -8,10 +8,13 @@ import json
 from collections.abc import Iterator, Mapping
 from functools import cache, partial
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, Literal, get_args
 
+from grader.base.grouping import Strings
 from grader.base.problems import Kind, Problem, kinds_in
+from grader.base.records import Named
 from grader.base.source import Location
+from grader.ros.known.output_rows import OutputPlace
 
 Family = Literal[
     "files",
@@ -87,7 +90,7 @@ NO_KEY = _warning("REF033", "Name that rosdep does not know")
 _UNKNOWN_KEY = Kind("REF034", "Name that may be no key of rosdep", severity="note", effect="other")
 NOT_COMPILED = _error("REF035", "C++ file that does not compile")
 BROUGHT = Kind("REF036", "Library that other packages install", severity="note", effect="other")
-NOT_BUILT = Kind("REF037", "Package that colcon does not find", severity="note", effect="other")
+NOT_BUILT = _warning("REF037", "Package that colcon does not find")
 OTHER_TIME = Kind(
     "REF038", "Node beside a simulation without its time", severity="note", effect="other"
 )
@@ -101,7 +104,7 @@ _OF_NAMES = (
     *(NO_PROGRAM, NO_TOPIC, NO_SERVICE, NO_INTERFACE),
 )
 # The kinds of what is not certain, where they are others.
-_DOUBTFUL: Mapping[Kind, Kind] = {
+_DOUBTFUL = {
     **dict.fromkeys(_OF_NAMES, SIMILAR),
     NO_RUN: MAY_WAIT,
     WRONG_VALUE: OTHER_VALUE,
@@ -111,18 +114,20 @@ _DOUBTFUL: Mapping[Kind, Kind] = {
 }
 
 
-class Symptom(NamedTuple):
+class Symptom(Named):
     """What the terminal prints where a rule is broken."""
 
+    name: str  # of the message, which rules may share
     pattern: str  # which is searched in the message, whose white space is single spaces
-    program: str  # that prints it
     source: str  # repository, file and line
     sentence: str  # what it means
     example: str  # a message that has the pattern, for pages: people search for it
-    within: tuple[str, ...] = ()  # the groups that must be in the lines of the finding
+    within: Strings = ()  # the groups that must be in the lines of the finding
+    follows: bool = False  # whether another message before it says the cause
+    place: OutputPlace = ""  # where the files say why, besides the findings
 
 
-class Rule(NamedTuple):
+class Rule(Named):
     """What agrees in a correct workspace: one entry, beside the function that finds what does not.
 
     A finding is of `kind` if something certainly fails at run time, and otherwise of `doubtful`,

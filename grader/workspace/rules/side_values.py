@@ -33,7 +33,7 @@ def side_facts(workspace: Workspace) -> Facts:
     """
     wrong: list[Mismatch] = []
     for robot in workspace.robots.known:
-        pairs = [*_pairs(robot)]
+        pairs = list(_pairs(robot))
         workspace.charge(_OF_PAIR * len(pairs))
         wrong += _exchanged(robot, pairs)
     if wrong:
@@ -116,9 +116,9 @@ def _exchanged(robot: KnownRobot, pairs: list[tuple[str, str]]) -> Mismatches:
     at = None
     for joint in robot.robot.joints:
         if wrong and joint.child == wrong[0]:
-            at = place(joint.origin.location, "xyz") if joint.origin is not None else None
+            at = place(joint.origin.location, "xyz") if joint.origin else None
             at = at or place(joint.location)
-    if at is not None:
+    if at:
         names = enumerated([quoted(name) for name in wrong])
         verb = "is" if len(wrong) == 1 else "are"
         message = f"{names} {verb} on the right of the robot, where y is negative (REP 103)"

@@ -2,7 +2,6 @@
 
 from grader.base.text import quoted
 from grader.ros.launch.launch_model import Launch, StartedNode
-from grader.ros.urdf.model import Joint
 from grader.workspace.graph.bridge_rows import BRIDGE, are_rows_known
 from grader.workspace.graph.graph import make_graph
 from grader.workspace.graph.started_controllers import spawned_controllers
@@ -19,6 +18,7 @@ from grader.workspace.rules.rule_table import (
     NO_COMPANION,
     Rule,
 )
+from grader.workspace.rules.shared_symptoms import JOINTS_UNKNOWN, NO_TRANSFORM
 
 _STATES = "sensor_msgs.msg.JointState"
 _SIMULATION = "ros_gz_sim"
@@ -32,6 +32,10 @@ _SIMULATED_JOINTS = Rule(
     why=(
         "Wheels turn in Gazebo, but robot_state_publisher gets no positions. RViz reports that "
         "their links have no transform."
+    ),
+    symptoms=(
+        NO_TRANSFORM,
+        JOINTS_UNKNOWN,
     ),
     wrong="""
 IncludeLaunchDescription(os.path.join(gazebo, 'launch', 'gz_sim.launch.py')),
@@ -75,7 +79,7 @@ def simulated_joint_facts(workspace: Workspace) -> Facts:
     They are yielded only if all that the launch file starts is known, and each robot has such
     joints. Where nothing in the workspace publishes positions, the rule joint-states says that.
     """
-    moving: list[Joint] = []
+    moving = []
     for robot in workspace.robots.known:
         joints = [joint for joint in robot.robot.joints if joint.has_position and not joint.mimic]
         if not joints:
@@ -108,7 +112,7 @@ def _may_have_states(workspace: Workspace, number: int, launch: Launch) -> bool:
     """Return whether something that a launch file starts may publish positions of joints."""
     if launch.components or spawned_controllers(workspace, number):
         return True
-    for _, other in workspace.launches.roots:  # that is launched beside it
+    for other in workspace.launches.outermost:  # that is launched beside it
         for node in other.nodes if other is not launch else ():
             if node.package == BRIDGE or node.executable in SPAWNERS:
                 return True

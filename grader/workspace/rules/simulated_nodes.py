@@ -2,13 +2,14 @@
 
 from collections.abc import Collection
 
+from grader.base.names import first_part
 from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.workspace.graph.bridge_rows import BRIDGE
 from grader.workspace.graph.graph import make_graph
-from grader.workspace.model.own_code import CPP_ENDINGS
+from grader.workspace.model.text_files import CODE_ENDINGS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
@@ -19,6 +20,7 @@ from grader.workspace.rules.rule_table import (
     OTHER_TIME,
     Rule,
 )
+from grader.workspace.rules.shared_symptoms import EXTRAPOLATION
 
 _TIME = "use_sim_time"
 _SIMULATIONS = ("ros_gz_sim", "ros_ign_gazebo", "gazebo_ros")
@@ -40,6 +42,7 @@ _SIMULATED_NODE = Rule(
         "What the node publishes has the time of the machine. RViz, tf2 and filters beside "
         "Gazebo may drop it as too far from their own time."
     ),
+    symptoms=(EXTRAPOLATION,),
     wrong="""
 IncludeLaunchDescription(os.path.join(gazebo, 'launch', 'gz_sim.launch.py')),
 Node(package='robot_state_publisher', executable='robot_state_publisher',
@@ -63,7 +66,7 @@ def simulated_node_facts(workspace: Workspace) -> Facts:
     for node, value in make_graph(workspace).given(_TIME):
         told.setdefault(node.location, set()).add(value.value is True)
     seen: set[Location] = set()
-    for _, launch in workspace.launches.roots:
+    for launch in workspace.launches.outermost:
         if not _starts_simulation(launch):
             continue
         yield Compared("wiring")
@@ -77,7 +80,7 @@ def simulated_node_facts(workspace: Workspace) -> Facts:
                 late.append(node)
         seen.update(node.location for node in late)
         if late:
-            names = enumerated([*dict.fromkeys(node.executable for node in late)])
+            names = enumerated(dict.fromkeys(node.executable for node in late))
             message = (
                 f"{launch.source.path} starts Gazebo, but gives {names} no {_TIME}: the time of "
                 "the machine counts there"
@@ -89,11 +92,11 @@ def simulated_node_facts(workspace: Workspace) -> Facts:
 
 def _starts_simulation(launch: Launch) -> bool:
     """Return whether a launch file certainly starts Gazebo, or creates a robot in it."""
-    if any(node.package in _SIMULATIONS and node.when is True for node in launch.nodes):
+    if any(node.package in _SIMULATIONS and node.when for node in launch.nodes):
         return True
     for passed in launch.passed:
         folder, _, inside = passed.path.partition("/")
-        if folder == "share" and inside.partition("/")[0] in _SIMULATIONS and passed.when is True:
+        if folder == "share" and first_part(inside) in _SIMULATIONS and passed.when:
             return True
     return False
 
@@ -101,16 +104,16 @@ def _starts_simulation(launch: Launch) -> bool:
 def _has_silent_code(workspace: Workspace, node: StartedNode) -> bool:
     """Return whether the code of a node is in the workspace, and does not set its time itself."""
     package = workspace.find_package(node)
-    if package is None:
+    if not package:
         return False
-    sources = workspace.texts.read_sources(package, (".py", *CPP_ENDINGS))
+    sources = workspace.texts.read_sources(package, CODE_ENDINGS)
     launches = {source.path for source in workspace.texts.launch_sources(package)}
     return not any(_TIME in source.text for source in sources if source.path not in launches)
 
 
 def _is_untold(node: StartedNode, told: Collection[Location]) -> bool:
     """Return whether a node is certainly started, and certainly not told which time to use."""
-    if node.when is not True or node.location in told or node.parameters is None:
+    if not node.when or node.location in told or node.parameters is None:
         return False
     if any(given.unknown or given.path for given in node.parameters):
         return False

@@ -4,13 +4,13 @@ They are found only where all robots, models and worlds are read, and all system
 """
 
 from collections.abc import Collection, Iterator, Mapping
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
 from grader.workspace.graph.bridge_rows import BRIDGE, BridgeRow, bridge_rows
-from grader.workspace.graph.gazebo_topics import name_system, roots
+from grader.workspace.graph.gazebo_topics import elements_in, name_system
 from grader.workspace.graph.graph import make_graph
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.bridges import has_unread_topics
@@ -32,7 +32,7 @@ _WITHOUT_TRANSFORMS = ("create", "parameter_bridge")
 _ODOM = "odom"  # the parent of the transform of a system that names none
 
 
-class _Need(NamedTuple):
+class _Need(Named):
     """What takes or sends the messages of a type in Gazebo."""
 
     systems: Collection[str]
@@ -42,7 +42,7 @@ class _Need(NamedTuple):
 def simulated_topic_facts(workspace: Workspace) -> Facts:
     """Yield rows without a system, and odometry without a row."""
     rows = [row for row in bridge_rows(workspace) if row.is_used]
-    creates = any(node.executable == "create" for _, node in workspace.launches.nodes)
+    creates = any(node.executable == "create" for node in workspace.launches.nodes)
     if not rows or not creates or has_unread_topics(workspace):
         return
     systems = _systems(workspace)
@@ -54,10 +54,9 @@ def simulated_topic_facts(workspace: Workspace) -> Facts:
 def _systems(workspace: Workspace) -> Mapping[str, Location]:
     """Return the systems of robots, models and worlds, without those of windows."""
     systems: dict[str, Location] = {}
-    for root, place in roots(workspace):
-        for plugin in root.iter("plugin"):
-            if not any(above.tag == "gui" for above in plugin.iterancestors()):
-                systems.setdefault(name_system(plugin), place(plugin))
+    for plugin, place in elements_in(workspace, "plugin"):
+        if not any(above.tag == "gui" for above in plugin.iterancestors()):
+            systems.setdefault(name_system(plugin), place(plugin))
     return systems
 
 
@@ -106,7 +105,7 @@ def _without_system(rows: Collection[BridgeRow], systems: Mapping[str, Location]
     for row in rows:
         need = _needs().get(row.gz_type)
         is_input = row.gz_type == "gz.msgs.Twist"
-        if need is None or (is_input and not row.is_read) or (not is_input and row.is_read):
+        if not need or (is_input and not row.is_read) or (not is_input and row.is_read):
             continue
         passive = gazebo().passive_systems.difference(need.systems)
         if passive.issuperset(systems):
@@ -151,7 +150,7 @@ def _odometry(workspace: Workspace, rows: Collection[BridgeRow]) -> Mismatches:
         return
     if any(fact.kind == "frame" for fact in openings(workspace)):
         return
-    frames = set[str]()
+    frames = set()
     for edge in make_graph(workspace).edges:
         if not edge.is_known and edge.by not in _WITHOUT_TRANSFORMS:
             return
@@ -171,15 +170,14 @@ def _has_more_bridges(workspace: Workspace) -> bool:
     """Return whether a bridge may have other rows, or publish them under other names."""
     return any(
         node.package == BRIDGE and (node.remaps != () or node.parameters is None)
-        for _, node in workspace.launches.nodes
+        for node in workspace.launches.nodes
     )
 
 
 def _parents(workspace: Workspace) -> Iterator[tuple[str, str, Location]]:
     """Yield the parents of the transforms of systems, with their systems and places."""
-    for root, place in roots(workspace):
-        for plugin in root.iter("plugin"):
-            frames = gazebo().system.get(name_system(plugin), NO_SYSTEM).transform
-            if frames is not None:
-                parent = (plugin.findtext(frames.parent) or _ODOM).strip()
-                yield parent, name_system(plugin), place(plugin)
+    for plugin, place in elements_in(workspace, "plugin"):
+        frames = gazebo().system.get(name_system(plugin), NO_SYSTEM).transform
+        if frames:
+            parent = (plugin.findtext(frames.parent) or _ODOM).strip()
+            yield parent, name_system(plugin), place(plugin)

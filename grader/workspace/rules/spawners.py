@@ -3,11 +3,12 @@
 It is compared as well whether each controller is started.
 """
 
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from grader.base.names import near
+from grader.base.names import last_part, near
+from grader.base.patterns import on_use
+from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode
 from grader.ros.config.yaml_values import sections_in
@@ -25,15 +26,19 @@ from grader.workspace.rules.names import (
     Mismatches,
     Open,
     Use,
-    corrections,
 )
 from grader.workspace.rules.rule_table import (
     NO_CONTROLLER,
     Rule,
 )
+from grader.workspace.rules.shared_symptoms import (
+    ACTION_NOT_CONNECTED,
+    CONTROLLER_NOT_LOADED,
+    SERVICE_NOT_CONTACTED,
+)
 
-_OTHER_TYPES = re.compile(r"load_controller|(?<![<-])\bparam\b(?!-)")  # of commands that set a type
-_OTHER_STARTS = re.compile(r"(load|switch|set)_controller|(Load|Switch)Controller")
+_OTHER_TYPES = on_use(r"load_controller|(?<![<-])\bparam\b(?!-)")  # of commands that set a type
+_OTHER_STARTS = on_use(r"(load|switch|set)_controller|(Load|Switch)Controller")
 _OF_GAZEBO = ("gz_ros2_control/", "ign_ros2_control/", "gazebo_ros2_control/")  # hardware
 _MAX_CONTROLLERS = 3  # in a message
 
@@ -70,6 +75,7 @@ _SPAWNER_MANAGER = Rule(
         "The spawner waits for services of the controller manager that nothing offers. It waits"
         " on or ends with a timeout, and no controller starts."
     ),
+    symptoms=(SERVICE_NOT_CONTACTED,),
     wrong="""
 Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
 Node(
@@ -101,7 +107,7 @@ def _without_plugin(workspace: Workspace) -> Mismatches:
     """
     if workspace.robots.has_controller_manager or workspace.robots.may_be_others:
         return
-    for number, (_, launch) in enumerate(workspace.launches.roots):
+    for number, launch in enumerate(workspace.launches.outermost):
         spawners = [node for node in launch.nodes if _is_spawner(node)]
         systems = [
             robot.place(system)
@@ -127,7 +133,11 @@ def _names_in_spawners(workspace: Workspace) -> Facts:
     Where the launch file of a spawner starts no controller manager, that of a robot's driver may
     have controllers of its own.
     """
-    for number, (_, launch) in enumerate(workspace.launches.roots):
+    managers = {}
+    for node in workspace.launches.nodes:
+        if _is_manager(node):
+            managers[workspace.code.find_name(node)] = node.location
+    for number, launch in enumerate(workspace.launches.outermost):
         spawners = [node for node in launch.nodes if _is_spawner(node)]
         spawners = [
             node for node in spawners if _is_defined_by_files(workspace, node.arguments or ())
@@ -141,7 +151,7 @@ def _names_in_spawners(workspace: Workspace) -> Facts:
         for node in spawners:
             for name in _named(node.arguments or ()):
                 yield Use("controller", name, node.location, "spawner", owner)
-            yield from _managers_named(workspace, node)
+            yield from _managers_named(node, managers)
 
 
 def _has_manager(workspace: Workspace, number: int, launch: Launch) -> bool:
@@ -179,20 +189,15 @@ def _is_typed(words: Sequence[str | None]) -> bool:
     return any(word and word.startswith(("-t", "--controller-t")) for word in words)
 
 
-def _managers_named(workspace: Workspace, spawner: StartedNode) -> Facts:
+def _managers_named(spawner: StartedNode, managers: Mapping[str | None, Location]) -> Facts:
     """Yield the controller manager that a spawner waits for, if it means another one.
 
     It surely stands for another one.
     """
-    managers = {
-        workspace.code.find_name(node): node.location
-        for _, node in workspace.launches.nodes
-        if _is_manager(node)
-    }
     for option, word in pairwise(spawner.arguments or ()):
         if option not in ("-c", "--controller-manager"):
             continue
-        name = (word or "").rpartition("/")[2]
+        name = last_part(word or "")
         meant = near(name, filter(None, managers)) if name not in managers else None
         if meant is not None:
             at = managers[meant]
@@ -200,8 +205,8 @@ def _managers_named(workspace: Workspace, spawner: StartedNode) -> Facts:
                 f"spawner: there is no controller manager {name!r}; did you mean {meant!r} "
                 f"({at.file_and_line})?"
             )
-            either = corrections(name, spawner.location, meant)
-            yield Mismatch(_SPAWNER_MANAGER, message, spawner.location, at, corrections=either)
+            wrong = Mismatch(_SPAWNER_MANAGER, message, spawner.location, at)
+            yield wrong.correcting(name, meant)
 
 
 def _is_manager(node: StartedNode) -> bool:
@@ -217,6 +222,7 @@ _MANAGER_PARAMETERS = Rule(
         "For each spawner the controller manager prints that the 'type' param was not defined, "
         "and it loads no such controller."
     ),
+    symptoms=(CONTROLLER_NOT_LOADED,),
     wrong="""
 Node(package='controller_manager', executable='ros2_control_node'),
 Node(package='controller_manager', executable='spawner', arguments=['arm_controller']),
@@ -241,7 +247,7 @@ def _without_type(
     The controller manager reads its own section of its files, and a spawner that of its controller.
     """
     manager, lacks_type = _controllers_without_type(workspace, package, launch)
-    if manager is None or _OTHER_TYPES.search(launch.source.text):
+    if not manager or _OTHER_TYPES.search(launch.source.text):
         return
     files = [
         workspace.installed.find_source(each.path) for each in manager.parameters or () if each.path
@@ -338,28 +344,24 @@ def _misspelt_managers(workspace: Workspace) -> Mismatches:
 
     They are yielded where none is called as the controller manager.
     """
-    if not any(_is_spawner(node) for _, node in workspace.launches.nodes):
+    if not any(_is_spawner(node) for node in workspace.launches.nodes):
         return
     sections = []
-    for _, tree in workspace.installed.trees:
+    for tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
-            name = keys[-1].rpartition("/")[2] if keys else ""
+            name = last_part(keys[-1]) if keys else ""
             if name == MANAGER:
                 return
             if near(name, (MANAGER,)) is not None and _has_types(section):
                 sections.append((name, tree.key_location(*keys)))
     for name, at in sections:
-        message = (
-            f"the controller manager does not read the types below {name!r}; did you mean "
-            f"{MANAGER!r}?"
-        )
-        yield Mismatch(_MANAGER_SECTION, message, at, corrections=corrections(name, at, MANAGER))
+        message = f"the controller manager does not read the types below {name!r}"
+        yield Mismatch(_MANAGER_SECTION, message, at).meaning(name, MANAGER)
 
 
 def _has_types(section: YamlNode) -> bool:
     """Return whether parameters have the types of controllers."""
-    inner = section.value.values() if isinstance(section.value, dict) else ()
-    types = [kind for node in inner if (kind := node.get("type")) is not None]
+    types = [kind for node in section.table.values() if (kind := node.get("type"))]
     return any("/" in (kind.text or "") for kind in types)
 
 
@@ -369,7 +371,7 @@ def _no_controllers(workspace: Workspace) -> Mismatches:
         return
     for package, launch in workspace.launches.roots:
         manager, lacking = _controllers_without_type(workspace, package, launch)
-        if manager is not None and lacking:
+        if manager and lacking:
             quoted_names = [quoted(name) for name in sorted(filter(None, lacking))]
             names = enumerated(quoted_names, _MAX_CONTROLLERS)
             message = f"no parameter file of the controller manager has the type of {names}"
@@ -390,6 +392,7 @@ _CONTROLLER_STARTED = Rule(
         "A controller without a spawner is not loaded. Its joints do not move, or without joint"
         " states the links of the robot have no transforms in RViz."
     ),
+    symptoms=(ACTION_NOT_CONNECTED,),
     wrong="""
 Node(package='controller_manager', executable='ros2_control_node', parameters=[controllers]),
 Node(package='controller_manager', executable='spawner', arguments=['arm_controller']),
@@ -422,7 +425,8 @@ def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Fac
     if spawned is None:
         return
     given_files = {*workspace.parameters.files, *workspace.parameters.controller_files}
-    publishing, moving = [], []
+    publishing = []
+    moving = []
     for controller in controllers:
         if controller.location.path not in given_files:
             continue
@@ -454,12 +458,12 @@ def _spawned(workspace: Workspace) -> set[str | None] | None:
 
     The result is None without a spawner, or where something else may start some.
     """
-    texts = (*workspace.texts.launch_texts, *workspace.texts.python_texts)
+    texts = workspace.texts.launch_texts + workspace.texts.python_texts
     if workspace.launches.unknown_nodes or any(map(_OTHER_STARTS.search, texts)):
         return None
-    spawned: set[str | None] = set()
+    spawned = set()
     has_spawner = False
-    for _, node in workspace.launches.nodes:
+    for node in workspace.launches.nodes:
         if _is_spawner(node):
             has_spawner = True
             spawned |= {controller.node_name for controller in list_controllers(node) or ()}

@@ -5,7 +5,7 @@ from contextlib import suppress
 
 from grader.base.source import Location
 from grader.base.text import quoted
-from grader.ros.urdf.model import Joint, Limit, Robot
+from grader.ros.urdf.model import Limit, Robot
 from grader.ros.xml.parsing import Element, XmlFile
 from grader.workspace.graph.compared_robots import ComparedRobots
 from grader.workspace.model.known_robots import KnownRobot
@@ -26,6 +26,7 @@ from grader.workspace.rules.rule_table import (
     SIMILAR,
     DefinedKind,
     Rule,
+    Symptom,
 )
 
 _LINKS = ("link1", "link2", "parent_link", "child_link", "base_link", "tip_link")
@@ -49,7 +50,7 @@ def srdf_facts(workspace: Workspace) -> Facts:
         for group in file.root.iterchildren("group"):
             yield Definition("group", group.get("name", ""), file.location(group))
         known_robot = _described_robot(workspace, file)
-        if known_robot is not None:
+        if known_robot:
             robot = known_robot.robot
             for use in _names(file):
                 yield among(use, ComparedRobots((known_robot,)))
@@ -91,7 +92,8 @@ def _names(file: XmlFile) -> Iterator[Use]:
             continue
         at = file.location(element)
         yield from _links_and_groups(element, at)
-        name, kind = element.get("name", ""), _kind_of_name(element, root)
+        name = element.get("name", "")
+        kind = _kind_of_name(element, root)
         is_virtual = kind == "joint" and name in virtual
         if kind is not None and name and not is_virtual:
             yield Use(kind, name, at, f"<{element.tag}>")
@@ -126,6 +128,15 @@ _SRDF_ROBOT = Rule(
     why=(
         "MoveIt prints 'Semantic description is not specified for the same robot as the URDF' "
         "at each start, and the SRDF may be for another robot."
+    ),
+    symptoms=(
+        Symptom(
+            "semantic-robot",
+            pattern=r"Semantic description is not specified for the same robot as the URDF",
+            source="moveit/srdfdom e23af6e, src/model.cpp:660",
+            sentence="The SRDF names another robot than the URDF.",
+            example="Semantic description is not specified for the same robot as the URDF",
+        ),
     ),
     wrong='<robot name="robot"><group name="base"><link name="base_link"/></group></robot>',
     right='<robot name="rover"><group name="base"><link name="base_link"/></group></robot>',
@@ -205,7 +216,7 @@ def _states(robot: Robot, file: XmlFile) -> Mismatches:
         limit = limits.get(name)
         with suppress(ValueError):
             value = float(element.get("value", ""))
-            if limit is not None and _is_beyond(value, limit):
+            if limit and _is_beyond(value, limit):
                 message = (
                     f"<group_state>: {quoted(name)} is at {value:g}; its limits are "
                     f"{limit.lower:g} and {limit.upper:g}"
@@ -263,7 +274,7 @@ def _neighbours(robot: Robot, file: XmlFile) -> Mismatches:
     for element in file.root.iterchildren("disable_collisions"):
         disabled.add(frozenset((element.get("link1"), element.get("link2"))))
     solid = {link.name for link in robot.links if link.collisions}
-    compared: list[Joint] = []
+    compared = []
     count = 0
     for joint in robot.joints:
         pair = frozenset((joint.parent, joint.child))

@@ -34,7 +34,8 @@ def standing_problem(path: str, driving: DescribedDriving, *, with_course: bool)
         driving: How it stands and drives.
         with_course: Whether it counts that it does not drive straight ahead.
     """
-    faults, texts = list(driving.rest_faults), list[str]()
+    faults = list(driving.rest_faults)
+    texts = []
     if faults:
         texts.append(f"on level ground, {'; '.join(fault.text for fault in faults)}")
     if with_course and driving.course_faults:
@@ -43,6 +44,6 @@ def standing_problem(path: str, driving: DescribedDriving, *, with_course: bool)
         faults += driving.course_faults
     if not texts:
         return None
-    places = [fault.at.resolve() for fault in faults if fault.at is not None]
+    places = [fault.at.resolve() for fault in faults if fault.at]
     at = next(iter(places), Location(path, 1, 1))
     return _ROBOT_STANDS.problem("; ".join(texts), at, is_certain=False)

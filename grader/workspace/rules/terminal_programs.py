@@ -5,34 +5,31 @@ The standard input of what `ros2 launch` starts is a pipe that nothing writes to
 
 import re
 
-from grader.base.source import Location
+from grader.base.patterns import on_use
 from grader.ros.known.package_rows import program_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.workspace.model.code_text import code_alone
-from grader.workspace.model.own_code import CPP_ENDINGS
+from grader.workspace.model.text_files import CODE_ENDINGS
 from grader.workspace.model.workspace import Workspace
 from grader.workspace.rules.names import (
     Compared,
     Facts,
     warning,
 )
-from grader.workspace.rules.rule_table import (
-    MAY_WAIT,
-    Rule,
-)
+from grader.workspace.rules.rule_table import MAY_WAIT, Rule, Symptom
 
 # What reads or changes the settings of a terminal, and that it is the one of the standard input.
-_KEYS = re.compile(r"\b(?:tcgetattr|setraw|setcbreak)\s*+\(")
-_STANDARD = re.compile(r"\bstdin\b|\bSTDIN_FILENO\b|\btcgetattr\s*+\(\s*+0\b|\bkfd\s*+[=({]\s*+0\b")
+_KEYS = on_use(r"\b(?:tcgetattr|setraw|setcbreak)\s*+\(")
+_STANDARD = on_use(r"\bstdin\b|\bSTDIN_FILENO\b|\btcgetattr\s*+\(\s*+0\b|\bkfd\s*+[=({]\s*+0\b")
 # What reads keys or lines in Python without naming the standard input.
-_ALSO = re.compile(r"\bcurses\.(?:wrapper|initscr)\b|(?<![\w.])input\s*+\(")
+_ALSO = on_use(r"\bcurses\.(?:wrapper|initscr)\b|(?<![\w.])input\s*+\(")
 # Code that looks whether there is a terminal or an option, opens another one, or goes on without.
-_OTHERWISE = re.compile(
+_OTHERWISE = on_use(
     r"\bisatty\b|\bopenpty\b|\btermios\.error\b|\bEOFError\b|\bargv\b|\bargparse\b|[tT]hread"
     r"|\b(?:def|import|for|as)\s++input\b"
 )
-_IF_MAIN = re.compile(r"^if\s++__name__\b", re.MULTILINE)  # what follows is run by no entry point
-_OTHER_TERMINAL = re.compile(r"/dev/tty\b|['\"]launch-prefix['\"]")
+_IF_MAIN = on_use(r"^if\s++__name__\b", re.MULTILINE)  # what follows is run by no entry point
+_OTHER_TERMINAL = on_use(r"/dev/tty\b|['\"]launch-prefix['\"]")
 _PORT = "/dev/tty"  # also of another device
 
 
@@ -44,6 +41,24 @@ _PROGRAM_TERMINAL = Rule(
     why=(
         "ros2 launch does not pass keys to a program. It waits without end, or it stops with "
         "'Inappropriate ioctl for device'."
+    ),
+    symptoms=(
+        Symptom(
+            "no-terminal",
+            pattern=(
+                r"\ATraceback \(most recent call last\): File "
+                r'"(?:[^"\s]{0,300}/)?(?P<program>[^/"\s]{1,100}+)", line [0-9]{1,6}, in '
+                r"<module>.{0,4000}? termios\.error: \(25, "
+            ),
+            source="python/cpython 02ea82ae, Modules/termios.c:89",
+            sentence="A program that reads keys has no terminal.",
+            example=(
+                'Traceback (most recent call last): File "/opt/ros/jazzy/lib/'
+                'teleop_twist_keyboard/teleop_twist_keyboard", line 33, in <module> main() '
+                "termios.error: (25, 'Inappropriate ioctl for device')"
+            ),
+            within=("program",),
+        ),
     ),
     wrong="Node(package='teleop_twist_keyboard', executable='teleop_twist_keyboard'),",
     right="""
@@ -60,12 +75,12 @@ def terminal_facts(workspace: Workspace) -> Facts:
     """
     if any(map(_OTHER_TERMINAL.search, workspace.texts.launch_texts)):
         return
-    said = set[Location]()
+    said = set()
     for _, node in workspace.launches.launched:
         if node.when is False or node.has_prefix or node.location in said:
             continue
         yield Compared("wiring")
-        if program_row(node.package, node.executable).reads_keys or _reads_keys(workspace, node):
+        if program_row(*node.program).reads_keys or _reads_keys(workspace, node):
             said.add(node.location)
             message = (
                 f"{node.executable} reads keys or lines, and ros2 launch gives it no terminal: "
@@ -89,9 +104,10 @@ def _reads_keys(workspace: Workspace, node: StartedNode) -> bool:
 
 def _find_file(workspace: Workspace, node: StartedNode) -> tuple[str, str]:
     """Return the path and the text of the file of an own node; empty for another one."""
-    facts, package = workspace.code.own_node(node), workspace.find_package(node)
-    if facts is None or package is None:
+    facts = workspace.code.own_node(node)
+    package = workspace.find_package(node)
+    if not facts or not package:
         return "", ""
     path = facts.location.path
-    sources = workspace.texts.read_sources(package, (".py", *CPP_ENDINGS))
+    sources = workspace.texts.read_sources(package, CODE_ENDINGS)
     return path, next((source.text for source in sources if source.path == path), "")

@@ -4,9 +4,10 @@ Two sources send commands, images have another transport, displays of RViz ask f
 programs send another type.
 """
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import chain
 
+from grader.base.names import first_part
 from grader.base.text import quoted
 from grader.ros.config.rviz import Display
 from grader.ros.known.package_tables import transport_types
@@ -14,18 +15,20 @@ from grader.workspace.graph.code_ends import End
 from grader.workspace.graph.graph import Graph, make_graph
 from grader.workspace.graph.launch_graph import GraphEnd, GraphNode, LaunchGraph
 from grader.workspace.graph.node_ends import deciding_parameter
+from grader.workspace.graph.rviz_ends import list_rviz_files
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Fact, Mismatch, warning
+from grader.workspace.rules.names import Facts, Mismatches, warning
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
     Rule,
 )
+from grader.workspace.rules.shared_symptoms import INCOMPATIBLE_QUALITY
 
 _COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 _IMAGE = "sensor_msgs.msg.Image"
 
 
-def topic_wiring_facts(workspace: Workspace) -> Iterator[Fact]:
+def topic_wiring_facts(workspace: Workspace) -> Facts:
     """Yield topics on which messages do not arrive as they should."""
     graph = make_graph(workspace)
     publishers = graph.certain("publisher", "code")
@@ -59,14 +62,14 @@ self.commands = self.create_publisher(Twist, 'pilot/commands', 10)  # an input o
 )
 
 
-def _two_commanders(workspace: Workspace, graph: LaunchGraph) -> Iterator[Mismatch]:
+def _two_commanders(workspace: Workspace, graph: LaunchGraph) -> Mismatches:
     """Yield the topics of commands that two nodes of own code publish, and something obeys."""
-    own_packages = {package.name for package in workspace.packages}
-    obeyed: set[str] = set()
-    commands: list[tuple[GraphNode, GraphEnd]] = []
+    own_packages = workspace.own_packages
+    obeyed = set()
+    commands = []
     for node in graph.nodes:
         workspace.charge(1 + len(node.ends))
-        is_own = node.program.partition("/")[0] in own_packages
+        is_own = first_part(node.program) in own_packages
         for end in node.ends:
             if node.doubt or end.doubt or end.type not in _COMMANDS:
                 continue
@@ -75,7 +78,7 @@ def _two_commanders(workspace: Workspace, graph: LaunchGraph) -> Iterator[Mismat
             elif is_own:
                 commands.append((node, end))
     first: dict[str, tuple[GraphNode, GraphEnd]] = {}
-    said: set[str] = set()
+    said = set()
     for node, end in commands:
         other, before = first.setdefault(end.name, (node, end))
         if other is not node and end.name in obeyed and end.name not in said:
@@ -102,7 +105,7 @@ _IMAGE_TRANSPORT = Rule(
 )
 
 
-def _other_transport(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
+def _other_transport(publishers: Sequence[End], subscriptions: Sequence[End]) -> Mismatches:
     """Yield subscriptions of images on a topic that carries compressed ones."""
     published = {publisher.name for publisher in publishers}
     for each in subscriptions:
@@ -117,7 +120,7 @@ def _other_transport(publishers: Sequence[End], subscriptions: Sequence[End]) ->
         yield warning(_IMAGE_TRANSPORT, message, each.location)
 
 
-def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Mismatch]:
+def _displays(workspace: Workspace, publishers: Sequence[End]) -> Mismatches:
     """Yield displays of RViz that ask for reliable messages of best-effort publishers.
 
     Every publisher of the topic sends as best effort.
@@ -125,11 +128,9 @@ def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Misma
     offered: dict[str, set[str | None]] = {}
     for each in publishers:
         offered.setdefault(each.name, set()).add(each.endpoint.qos.reliability)
-    for package in workspace.packages:
-        files = [package.rviz(path) for path in package.rviz_files]
-        for display in chain.from_iterable(file.displays for file in files):
-            if display.enabled:
-                yield from _other_reliability(display, offered)
+    for display in chain.from_iterable(file.displays for file in list_rviz_files(workspace)):
+        if display.enabled:
+            yield from _other_reliability(display, offered)
 
 
 _DISPLAY_QUALITY = Rule(
@@ -141,6 +142,7 @@ _DISPLAY_QUALITY = Rule(
         "A best effort publisher is not matched with a reliable subscription. RViz prints a "
         "warning of incompatible QoS, and the display stays empty."
     ),
+    symptoms=(INCOMPATIBLE_QUALITY,),
     wrong="""
 - Class: rviz_default_plugins/Image
   Name: Image
@@ -165,7 +167,7 @@ self.images = self.create_publisher(Image, 'image', best_effort)
 
 def _other_reliability(
     display: Display, offered: Mapping[str, Collection[str | None]]
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that a display asks for reliable messages, which are published as best effort."""
     policy = display.node.get("Topic", "Reliability Policy")
     topic = display.node.get("Topic", "Value")
@@ -204,7 +206,7 @@ Node(package='teleop_twist_keyboard', executable='teleop_twist_keyboard', prefix
 )
 
 
-def _programs(graph: Graph) -> Iterator[Mismatch]:
+def _programs(graph: Graph) -> Mismatches:
     """Yield the well-known programs that send a controller another type than it reads.
 
     A parameter decides the type.

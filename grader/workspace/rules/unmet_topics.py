@@ -4,11 +4,11 @@ They are found only where all of the code is read, as another program may be the
 missed.
 """
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
 
-from grader.base.names import closest, is_misspelling
+from grader.base.names import closest, first_part, is_misspelling, last_part
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.ros.known.package_rows import package_row
 from grader.ros.known.package_tables import transport_types
@@ -22,20 +22,22 @@ from grader.workspace.graph.manual_ends import manual_ends
 from grader.workspace.graph.message_ways import is_named, may_open
 from grader.workspace.graph.unread_ends import Sought, may_be_opened
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import Fact, Mismatch, warning
+from grader.workspace.rules.names import Facts, Mismatch, Mismatches, warning
 from grader.workspace.rules.rule_table import (
     NO_COMPANION,
+    NO_TOPIC,
     Rule,
 )
 
 _OF_ENDPOINT = 2  # parts of an endpoint that is compared
-_SPEEDS, _TEXT = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
+_SPEEDS = "geometry_msgs/msg/Twist"
+_TEXT = "std_msgs/msg/String"
 _COMMANDED = (BRIDGE, "gazebo_plugins")  # what they subscribe to is for commands
 _MANAGER = "controller_manager/ros2_control_node"
-_PLAYS = re.compile(r"\bros2\s++(?:topic|bag)\b")  # commands that may publish
+_PLAYS = on_use(r"\bros2\s++(?:topic|bag\s++play)\b")  # commands that may publish
 
 
-class _Opened(NamedTuple):
+class _Opened(Named):
     """A topic that a program opens which no launch file starts, or another node."""
 
     program: str  # empty for a node that is started, or of no program
@@ -43,13 +45,14 @@ class _Opened(NamedTuple):
     endpoint: Endpoint
 
 
-def unmet_topic_facts(workspace: Workspace) -> Iterator[Fact]:
+def unmet_topic_facts(workspace: Workspace) -> Facts:
     """Yield the topics that connect nothing."""
     yield from _of_unstarted(workspace)
-    for graph, (_, launch) in zip(
-        make_graph(workspace).launched, workspace.launches.roots, strict=True
+    for graph, launch in zip(
+        make_graph(workspace).launched, workspace.launches.outermost, strict=True
     ):
         yield from _of_one_launch(workspace, graph, launch)
+        yield from _unpublished(workspace, graph, launch)
 
 
 # --- Programs that no launch file starts
@@ -75,7 +78,7 @@ _UNSTARTED_TYPE = Rule(
 )
 
 
-def _of_unstarted(workspace: Workspace) -> Iterator[Mismatch]:
+def _of_unstarted(workspace: Workspace) -> Mismatches:
     """Yield topics that two programs of a package open with types that never agree.
 
     No launch file starts the programs, and no node of the workspace has a partner for either one.
@@ -87,7 +90,7 @@ def _of_unstarted(workspace: Workspace) -> Iterator[Mismatch]:
     if topics is None:
         return
     for name, opened in topics.items():
-        if name.rpartition("/")[2] in shared_names().topics:
+        if last_part(name) in shared_names().topics:
             continue
         published = [each for each in opened if each.endpoint.kind == "publisher"]
         subscribed = [each for each in opened if each.endpoint.kind == "subscription"]
@@ -97,8 +100,9 @@ def _of_unstarted(workspace: Workspace) -> Iterator[Mismatch]:
             continue
         for each in subscribed:
             other = _of_same_package(each, published)
-            if other is not None:
-                at, place = each.endpoint.location, other.endpoint.location
+            if other:
+                at = each.endpoint.location
+                place = other.endpoint.location
                 message = (
                     f"{each.program} subscribes to {name} with {each.endpoint.type}, and only "
                     f"{other.program} publishes it, with {other.endpoint.type} "
@@ -117,12 +121,12 @@ def _of_same_package(one: _Opened, others: Sequence[_Opened]) -> _Opened | None:
 
 def _all_topics(workspace: Workspace) -> "Mapping[str, Sequence[_Opened]] | None":
     """Return the topics of all code by their names; None where there may be more."""
-    started = {(node.package, node.executable) for _, node in workspace.launches.nodes}
+    started = workspace.launches.programs
     opened: dict[str, list[_Opened]] = {}
     for package, code in workspace.code.by_package.items():
         if code.doubts:
             return None
-        programs: dict[Location, str] = {}
+        programs = {}
         for program in code.programs:
             if (package, program.name) not in started and len(program.nodes) == 1:
                 programs[program.nodes[0].location] = program.name
@@ -145,7 +149,7 @@ def _all_topics(workspace: Workspace) -> "Mapping[str, Sequence[_Opened]] | None
 # ----------------------------------------------------------------------
 
 
-class _FreeEnd(NamedTuple):
+class _FreeEnd(Named):
     """An end that certainly is opened, and that no other node of its launch has a partner for."""
 
     node: GraphNode
@@ -160,7 +164,7 @@ class _FreeEnd(NamedTuple):
     @property
     def is_usual(self) -> bool:
         """Whether programs elsewhere open it, by its usual name."""
-        return self.end.name.rpartition("/")[2] in shared_names().topics
+        return last_part(self.end.name) in shared_names().topics
 
     @property
     def may_be_meant(self) -> bool:
@@ -170,14 +174,14 @@ class _FreeEnd(NamedTuple):
         """
         if self.plain_type == _SPEEDS:
             return True
-        package = self.node.program.partition("/")[0]
+        package = first_part(self.node.program)
         is_commanded = self.node.kind == "controller" or package in _COMMANDED
         opened = [end.name for end in self.node.ends].count(self.end.name)  # twice: both ways
         is_meant = self.is_own or (is_commanded and opened == 1)
         return is_meant and self.end.type != _TEXT and not self.is_usual
 
 
-def _of_one_launch(workspace: Workspace, graph: LaunchGraph, launch: Launch) -> Iterator[Mismatch]:
+def _of_one_launch(workspace: Workspace, graph: LaunchGraph, launch: Launch) -> Mismatches:
     """Yield a subscription that nothing publishes, where the only unread topic has its type.
 
     One launch file certainly starts both nodes, and all that it starts is read. Own code has the
@@ -187,7 +191,7 @@ def _of_one_launch(workspace: Workspace, graph: LaunchGraph, launch: Launch) -> 
     unheard = [free for free in _free_ends(workspace, graph, "publisher") if free.is_own]
     if not unheard or _may_open_more(graph):
         return
-    waiting = [*_free_ends(workspace, graph, "subscription")]
+    waiting = list(_free_ends(workspace, graph, "subscription"))
     workspace.charge(len(waiting) * (len(waiting) + len(unheard)))
     for asking in waiting:
         rivals = [free for free in waiting if free.plain_type == asking.plain_type]
@@ -198,12 +202,12 @@ def _of_one_launch(workspace: Workspace, graph: LaunchGraph, launch: Launch) -> 
 
 def _free_ends(workspace: Workspace, graph: LaunchGraph, kind: EndpointKind) -> Iterator[_FreeEnd]:
     """Yield the ends of a kind that certainly are opened and have no partner in the launch."""
-    own_packages = {package.name for package in workspace.packages}
-    partners: list[tuple[GraphNode, str]] = []
+    own_packages = workspace.own_packages
+    partners = []
     for node in graph.nodes:
         partners += [(node, end.name) for end in node.ends if end.kind == OPPOSITES[kind]]
     for node in graph.nodes:
-        is_own = node.kind != "controller" and node.program.partition("/")[0] in own_packages
+        is_own = node.kind != "controller" and first_part(node.program) in own_packages
         for end in node.ends:
             free = _FreeEnd(node, end, is_own)
             is_known = end.type and not (node.doubt or end.doubt)
@@ -219,7 +223,7 @@ def _may_open_more(graph: LaunchGraph) -> bool:
     if graph.unread or any(_PLAYS.search(process.program) for process in graph.processes):
         return True
     for node in graph.nodes:
-        without = package_row(node.program.partition("/")[0]).without
+        without = package_row(first_part(node.program)).without
         if may_open(node, ("publisher", "subscription")) and "commands" not in without:
             return True
     return False
@@ -250,16 +254,17 @@ def _partners(
     graph: LaunchGraph,
     asking: _FreeEnd,
     offering: _FreeEnd,
-) -> Iterator[Mismatch]:
+) -> Mismatches:
     """Yield that the topic of a subscription is meant to be that of a publisher.
 
     Another launch file, or a person, may join either one with others.
     """
-    asked, offered = asking.end, offering.end
+    asked = asking.end
+    offered = offering.end
     if _is_of_other_rule(launch, graph, asking, offering):
         return
     is_similar = is_misspelling(asked.name, offered.name)
-    is_similar = is_similar or _last(asked.name) == _last(offered.name)
+    is_similar = is_similar or last_part(asked.name) == last_part(offered.name)
     joined = make_graph(workspace)
     is_fed = asked.name in joined.names_opened("publisher") and not is_similar
     if is_fed or offered.name in joined.names_opened("subscription") | joined.names_read:
@@ -280,10 +285,6 @@ def _partners(
         yield warning(_TOPIC_PARTNER, message, offered.location, asked.location)
 
 
-def _last(name: str) -> str:
-    return name.rpartition("/")[2]
-
-
 def _is_of_other_rule(
     launch: Launch, graph: LaunchGraph, asking: _FreeEnd, offering: _FreeEnd
 ) -> bool:
@@ -295,7 +296,7 @@ def _is_of_other_rule(
     asked = asking.end
     is_of_type = asked.type == offering.end.type
     if asking.is_own:
-        is_compressed = _last(asked.name) in transport_types()
+        is_compressed = last_part(asked.name) in transport_types()
         is_similar = closest(asked.name, [offering.end.name]) is not None
         is_said = is_compressed or (is_similar and not asking.is_usual) or not is_of_type
     else:
@@ -315,3 +316,45 @@ def _is_remapped(launch: Launch, asking: _FreeEnd, offering: _FreeEnd) -> bool:
         if is_asking and names and name not in names:
             return True
     return False
+
+
+_TOPIC_RECORDED = Rule(
+    "topic-recorded",
+    "topics",
+    NO_TOPIC,
+    "A topic that a launch file records is one that a node of it publishes.",
+    why="The recording has no messages of the topic: ros2 bag record waits for it for ever.",
+    wrong="""
+Node(package='rover', executable='meter'),
+ExecuteProcess(cmd=['ros2', 'bag', 'record', '/distanc']),
+""",
+    right="""
+Node(package='rover', executable='meter'),
+ExecuteProcess(cmd=['ros2', 'bag', 'record', '/distance']),
+""",
+    beside={
+        "meter.py": "",
+    },
+)
+
+
+def _unpublished(workspace: Workspace, graph: LaunchGraph, launch: Launch) -> Mismatches:
+    """Yield the recorded topics that no node publishes, where one publishes a similar one."""
+    names = [(name, each) for each in launch.commands for name in each.recorded_topics]
+    if not names or graph.not_started or _may_open_more(graph):
+        return
+    published = _list_published(graph)
+    elsewhere = make_graph(workspace).names_opened("publisher")
+    for name, command in names:
+        meant = closest(name, published) if name not in elsewhere else None
+        if meant is not None:
+            place = published[meant].file_and_line
+            message = f"nothing publishes {name}; did you mean {meant} ({place})?"
+            wrong = Mismatch(_TOPIC_RECORDED, message, command.location, published[meant])
+            yield wrong.correcting(name, meant, published[meant])
+
+
+def _list_published(graph: LaunchGraph) -> Mapping[str, Location]:
+    """Return the topics that nodes publish, and where."""
+    ends = [end for node in graph.nodes for end in node.ends if end.kind == "publisher"]
+    return {end.name: end.location for end in ends}

@@ -1,9 +1,9 @@
 """Parameters that a node in Python declares, and that no code of its package reads."""
 
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
+from grader.base.patterns import on_use
 from grader.base.source import Location
 from grader.ros.nodes.node_facts import PackageNodes
 from grader.workspace.model.workspace import Workspace
@@ -17,10 +17,10 @@ from grader.workspace.rules.rule_table import (
     Rule,
 )
 
-_TEXT = re.compile(r"[\"']([\w./]++)[\"']")
+_TEXT = on_use(r"[\"']([\w./]++)[\"']")
 _STATEMENT = "self.declare_parameter("  # begins a declaration whose value nothing uses
 # With one of these, code may read parameters whose names are not written.
-_READS_OTHERS = re.compile(
+_READS_OTHERS = on_use(
     r"get_parameters\(|get_parameters_by_prefix|_parameters|describe_parameters"
     r"|get_parameter\((?!\s*+[\"'][\w./]++[\"']\s*+\))"
 )
@@ -56,7 +56,7 @@ def unread_parameter_facts(workspace: Workspace) -> Facts:
     Nothing is said in a package whose code may read all parameters.
     """
     for package in workspace.packages:
-        texts: dict[str, str] = {}
+        texts = {}
         for source in workspace.texts.read_sources(package, (".py",)):
             texts[source.path] = source.text
         declared = _declared_in(workspace.code.by_package[package.name], texts)

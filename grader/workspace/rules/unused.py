@@ -3,11 +3,11 @@
 They are parameters that no node gets, and parts of a robot that nothing includes.
 """
 
-import posixpath
-import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
+from posixpath import basename, dirname, splitext
 
+from grader.base.patterns import on_use
 from grader.base.source import Location, Source
 from grader.files.tree import Tree
 from grader.ros.package.made_paths import MadePath, made_paths
@@ -35,7 +35,7 @@ _TEXTS_BY_NAME = ("Dockerfile", "Makefile", "justfile", "CMakeLists.txt")
 # Those that may make a path of variables.
 _MAKERS = (*(kind for kind in _TEXTS if kind not in (".md", ".rviz", ".json")), "CMakeLists.txt")
 _MAX_TEXT = 512 * 1024  # bytes
-_WORD = re.compile(rb"[\w-]+")
+_WORD = on_use(rb"[\w-]+")
 _BY_USUAL_NAMES = b"moveit_configs_utils"  # it finds the files of a package by their usual names
 _OF_MAP = frozenset(
     {b"image", b"resolution"}
@@ -52,7 +52,7 @@ def unused_files(workspace: Workspace) -> Iterator[Location]:
     made = {*_made(workspace)} if unnamed else set()
     offered = {*_offered(workspace)} if unnamed else set()
     for path in unnamed:
-        kind = (posixpath.dirname(path), posixpath.splitext(path)[1])
+        kind = (dirname(path), splitext(path)[1])
         if kind not in offered and not any(pattern.matches(path) for pattern in made):
             yield Location(path, 1, 1)
 
@@ -62,16 +62,16 @@ def _offered(workspace: Workspace) -> Iterator[tuple[str, str]]:
 
     A value that is a whole path says nothing of other files.
     """
-    names: set[str] = set()
-    for _, _, launch in workspace.launches.files:
+    names = set()
+    for launch in workspace.launches.every:
         names |= {value for _, value in launch.values if value.endswith(_KINDS)}
     names = {name for name in names if not name.startswith("/")}
     for package in workspace.packages if names else ():
         for path in _installed_data(package):
             workspace.charge(len(names))
             if any(f"/{path}".endswith(f"/{name}") for name in names):
-                folder = posixpath.dirname(package.path(path))
-                yield folder, posixpath.splitext(path)[1]
+                folder = dirname(package.path(path))
+                yield folder, splitext(path)[1]
 
 
 def _unnamed(workspace: Workspace) -> Iterator[str]:
@@ -105,15 +105,14 @@ def _installed_data(package: Package) -> list[str]:
 
 def _is_named(path: str, words: Collection[bytes], counts: Mapping[bytes, int]) -> bool:
     """Return whether another file than that with these words has the name of one."""
-    stem = posixpath.basename(path).partition(".")[0].encode()
+    stem = basename(path).partition(".")[0].encode()
     return counts[stem] > (stem in words)
 
 
 def _made(workspace: Workspace) -> Iterator[MadePath]:
     """Yield the ends of the paths that texts of the workspace make of variables."""
-    for package in workspace.packages:
-        for source in workspace.texts.read_sources(package, _MAKERS):
-            yield from workspace.folder.recall(_made_in, source.path, source.text)
+    for source in workspace.texts.every_source(_MAKERS):
+        yield from workspace.folder.recall(_made_in, source.path, source.text)
 
 
 def _made_in(path: str, text: str) -> list[MadePath]:
@@ -122,7 +121,7 @@ def _made_in(path: str, text: str) -> list[MadePath]:
 
 def _words_of_files(workspace: Workspace) -> dict[str, frozenset[bytes]]:
     """Return the words of each text, also of those outside of packages."""
-    words: dict[str, frozenset[bytes]] = {}
+    words = {}
     for package in workspace.packages:
         for path in package.tree.files:
             data = _text(package.tree, path)
@@ -137,7 +136,7 @@ def _words_of_files(workspace: Workspace) -> dict[str, frozenset[bytes]]:
 
 def _text(tree: Tree, path: str) -> bytes | None:
     """Return the bytes of a file that is a text; None for another one."""
-    is_text = path.endswith(_TEXTS) or posixpath.basename(path) in _TEXTS_BY_NAME
+    is_text = path.endswith(_TEXTS) or basename(path) in _TEXTS_BY_NAME
     return tree.read(path, _MAX_TEXT) if is_text else None
 
 

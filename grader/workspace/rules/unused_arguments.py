@@ -2,8 +2,11 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from re import Match
 
+from grader.base.names import last_part
+from grader.base.patterns import on_use
 from grader.base.source import Source
 from grader.base.text import enumerated, quoted
 from grader.workspace.model.workspace import Workspace
@@ -19,8 +22,10 @@ from grader.workspace.rules.rule_table import (
     Rule,
 )
 
-_DECLARED = re.compile(r"\bDeclareLaunchArgument\(\s*+(?:name\s*+=\s*+)?[\"'](\w++)[\"']")
-_TEXT = re.compile(r"[\"'](\w++)[\"']")
+_DECLARED = on_use(r"\bDeclareLaunchArgument\(\s*+(?:name\s*+=\s*+)?[\"'](\w++)[\"']")
+_BOUND = on_use(r"^[ \t]*+(\w++)\s*+=\s*+LaunchConfiguration\(\s*+[\"'](\w++)[\"']", re.MULTILINE)
+_WORD = on_use(r"(?<![\w\"'])[A-Za-z_]\w*+(?![\"'])")  # outside of texts
+_TEXT = on_use(r"[\"'](\w++)[\"']")
 # With one of these, others may use an argument, or text that is not read.
 _OTHER_USERS = (
     "IncludeLaunchDescription",
@@ -28,10 +33,10 @@ _OTHER_USERS = (
     "launch_configurations",
     "import_module",
 )
-_COMPUTED = re.compile(r"LaunchConfiguration\((?!\s*+(?:\w++\s*+=\s*+)?[\"']\w*+[\"']\s*+[,)])")
-_IMPORTED = re.compile(r"^[ \t]*+(?:from|import)\s++(\w++)", re.MULTILINE)
-_XACRO_DECLARED = re.compile(r"<xacro:arg\s++name\s*+=\s*+[\"']([\w-]++)[\"']")
-_XACRO_USED = re.compile(r"\$\(arg\s++([\w-]++)|\barg\(\s*+[\"'](\w++)")
+_COMPUTED = on_use(r"LaunchConfiguration\((?!\s*+(?:\w++\s*+=\s*+)?[\"']\w*+[\"']\s*+[,)])")
+_IMPORTED = on_use(r"^[ \t]*+(?:from|import)\s++(\w++)", re.MULTILINE)
+_XACRO_DECLARED = on_use(r"<xacro:arg\s++name\s*+=\s*+[\"']([\w-]++)[\"']")
+_XACRO_USED = on_use(r"\$\(arg\s++([\w-]++)|\barg\(\s*+[\"'](\w++)")
 
 
 def unused_argument_facts(workspace: Workspace) -> Facts:
@@ -89,22 +94,33 @@ def _of_launch_files(workspace: Workspace) -> Facts:
             if _may_be_used_otherwise(workspace, source):
                 continue
             yield Compared("words")
-            counts = Counter(_TEXT.findall(source.text))
-            declared = [*_DECLARED.finditer(source.text)]
+            counts = Counter(_TEXT.findall(source.text)) - _count_unread(source.text)
+            declared = list(_DECLARED.finditer(source.text))
             unused = [match for match in declared if counts[match[1]] == 1]
             if unused:
-                names = enumerated([quoted(match[1]) for match in unused])
-                noun = "argument" if len(unused) == 1 else "arguments"
-                message = f"nothing in the launch file uses the {noun} {names}"
+                message = f"nothing in the launch file uses the {_named(unused)}"
                 yield warning(_LAUNCH_ARGUMENT_USED, message, source.at(unused[0].start(1)))
+
+
+def _named(unused: Sequence[Match[str]]) -> str:
+    """Return the names of arguments as words: `arguments 'speed' and 'world'`."""
+    names = enumerated([quoted(match[1]) for match in unused])
+    return f"argument {names}" if len(unused) == 1 else f"arguments {names}"
+
+
+def _count_unread(text: str) -> Counter[str]:
+    """Return how often a value of an argument is bound to a variable that nothing reads."""
+    read = Counter(_WORD.findall(text))
+    return Counter(match[2] for match in _BOUND.finditer(text) if read[match[1]] == 1)
 
 
 def _may_be_used_otherwise(workspace: Workspace, source: Source) -> bool:
     """Return whether the arguments of a launch file may be used otherwise than by their names."""
-    text, name = source.text, source.path.rpartition("/")[2]
+    text = source.text
+    name = last_part(source.path)
     if any(word in text for word in _OTHER_USERS) or _COMPUTED.search(text):
         return True
-    modules = {package.name for package in workspace.packages}
+    modules = workspace.own_packages.keys()
     if not modules.isdisjoint(_IMPORTED.findall(text)):
         return True
     return any(name in other and other != text for other in workspace.texts.launch_texts)
@@ -112,7 +128,7 @@ def _may_be_used_otherwise(workspace: Workspace, source: Source) -> bool:
 
 def _used_arguments(sources: Iterable[Source]) -> set[str]:
     """Return the arguments of xacro that texts use."""
-    used = set[str]()
+    used = set()
     for source in sources:
         for match in _XACRO_USED.finditer(source.text):
             used.add(match[1] or match[2])
@@ -154,14 +170,12 @@ def _of_xacro(workspace: Workspace) -> Mismatches:
 
     A file of another package that one includes may use any.
     """
-    sources = [*workspace.robots.xacro_sources]
+    sources = list(workspace.robots.xacro_sources)
     if any(includes_others(workspace, source) for source in sources):
         return
     used = _used_arguments(sources)
     for source in sources:
         unused = [match for match in _XACRO_DECLARED.finditer(source.text) if match[1] not in used]
         if unused:
-            names = enumerated([quoted(match[1]) for match in unused])
-            noun = "argument" if len(unused) == 1 else "arguments"
-            message = f"nothing uses the {noun} {names} of xacro"
+            message = f"nothing uses the {_named(unused)} of xacro"
             yield warning(_XACRO_ARGUMENT_USED, message, source.at(unused[0].start(1)))

@@ -1,9 +1,9 @@
 """Libraries of Python and C++ that are no packages of ROS 2: whether package.xml declares them."""
 
-import re
 from collections.abc import Collection, Iterator
-from typing import NamedTuple
 
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.ros.known.rosdep_words import rosdep_words
 from grader.ros.package.package import Package
@@ -19,14 +19,14 @@ from grader.workspace.rules.rule_table import (
     NO_DEPENDENCY,
     Rule,
 )
-from grader.workspace.rules.used_packages import imported_modules
+from grader.workspace.rules.used_packages import imported_modules, required_by_cmake
 
 # What differs between the names of one library in keys, in pip and in apt.
-_BEFORE = re.compile(r"\A(?:python3?-)?(?:py(?=[a-z])|lib)?")
+_BEFORE = on_use(r"\A(?:python3?-)?(?:py(?=[a-z])|lib)?")
 _ENDINGS = ("dev", "all", "pip", "python", "core")
 
 
-class _LibraryUse(NamedTuple):
+class _LibraryUse(Named):
     """A library that a file uses, by its key; `name` is the module, or what CMake finds."""
 
     key: str
@@ -45,11 +45,11 @@ def library_facts(workspace: Workspace) -> Facts:
     own_modules = _modules_of_workspace(workspace)
     for package in workspace.packages:
         manifest = package.manifest
-        if manifest is None or manifest.refusals or package.is_of_ros1:
+        if not manifest or manifest.refusals or package.is_of_ros1:
             continue
         declared = {*manifest.dependencies}
         names = {_library_name(name) for name in declared}
-        seen: set[str] = set()
+        seen = set()
         for use in _used_libraries(workspace, package, own_modules):
             if use.key in seen:
                 continue
@@ -69,12 +69,9 @@ def _used_libraries(
         if is_needed and imported.name in words.modules and imported.name not in own_modules:
             key = words.modules[imported.name]
             yield _LibraryUse(key, imported.name, imported.location, is_built=False)
-    setup = package.installation
-    for required in setup.found_packages if setup is not None else ():
-        is_sure = required.is_required and required.is_certain and not required.is_for_tests
-        if is_sure and required.name in words.libraries:
-            assert setup is not None
-            key, at = words.libraries[required.name], setup.location(required.at)
+    for required, at in required_by_cmake(package):
+        if required.name in words.libraries and not required.is_for_tests:
+            key = words.libraries[required.name]
             yield _LibraryUse(key, required.name, at, is_built=True)
 
 
@@ -120,7 +117,7 @@ def main():
 
 def _undeclared(package: Package, use: _LibraryUse, declared: Collection[str]) -> Mismatches:
     """Yield that package.xml does not declare a library."""
-    assert package.manifest is not None
+    assert package.manifest
     is_brought = _is_brought(package, use.key, declared)
     if is_brought and use.is_built:
         return
@@ -138,7 +135,7 @@ def _is_brought(package: Package, key: str, declared: Collection[str]) -> bool:
         return True
     for name in declared:
         other = package.find(name)
-        inner = other.manifest.dependencies if other is not None and other.manifest else ()
+        inner = other.manifest.dependencies if other and other.manifest else ()
         if key in inner or not installing.isdisjoint(inner):
             return True
     return False
@@ -146,10 +143,10 @@ def _is_brought(package: Package, key: str, declared: Collection[str]) -> bool:
 
 def _modules_of_workspace(workspace: Workspace) -> set[str]:
     """Return the names of the modules and packages of Python in the workspace."""
-    modules: set[str] = set()
+    modules = set()
     for package in workspace.packages:
         modules.add(package.name)
-        if package.installation is not None:
+        if package.installation:
             modules |= {name.partition(".")[0] for name in package.installation.packages}
     return modules
 

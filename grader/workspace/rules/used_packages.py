@@ -3,26 +3,29 @@
 import posixpath
 import re
 from collections.abc import Collection, Iterator, Mapping
-from typing import NamedTuple
 
-from grader.base.names import near
+from grader.base.names import first_part, near
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location, Source
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
+from grader.ros.installation.installation import FoundPackage
 from grader.ros.installation.places import is_launch_file
 from grader.ros.known.package_rows import controller_row, is_known_controller
 from grader.ros.known.released import is_released
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
+from grader.ros.xml.elements import first_text
 from grader.workspace.model.text_files import FILES_A_PART
 from grader.workspace.model.workspace import Workspace
-from grader.workspace.rules.names import cost_of_guess
+from grader.workspace.rules.names import charge_guess
 
-_FIND = re.compile(r"\$\(find ([\w-]+)\)|package://([\w-]+)/")
+_FIND = on_use(r"\$\(find ([\w-]+)\)|package://([\w-]+)/")
 _OF_ROS = ("rclpy", "tf2_ros")
 _XACRO = "xacro"
 _RUNTIME = "rosidl_default_runtime"  # what generated interfaces need
-_IMPORT = re.compile(r"^[ \t]*+(?:from[ \t]+(\w+)|import[ \t]+(\w[\w., \t]*))", re.MULTILINE)
+_IMPORT = on_use(r"^[ \t]*+(?:from[ \t]+(\w+)|import[ \t]+(\w[\w., \t]*))", re.MULTILINE)
 _MAX_GAP = 200  # characters of blank lines and spaces before an import
 _OPTIONAL = ("try:", "TYPE_CHECKING:")  # before an import that may fail
 # What every launch file imports; hardly a package declares it (275 of 691 public ones do not).
@@ -31,28 +34,28 @@ _OF_LAUNCH_FILES = (
     *("launch_testing_ros", "ament_index_python"),
 )
 _CALL_WORDS = ("FindPackage", "get_package_", "$(find-pkg-", "$(exec-in-pkg")  # of each call
-_CALL = re.compile(
+_CALL = on_use(
     r"\b(?:FindPackageShare|FindPackagePrefix|get_package_(?:share_(?:directory|path)|prefix))\("
     r"\s*(?:package(?:_name)?\s*=\s*)?[\"'](?P<call>\w+)[\"']"
     r"|\$\((?:find-pkg-(?:share|prefix)|exec-in-pkg\s+\S+)\s+(?P<xml>\w+)\s*\)"
 )
 # Metapackages whose name folders of headers and modules of other packages have.
 _OF_SEVERAL = ("moveit",)
-_LONG_TEXT = re.compile(r"\"\"\".*?\"\"\"|\'\'\'.*?\'\'\'", re.DOTALL)
+_LONG_TEXT = on_use(r"\"\"\".*?\"\"\"|\'\'\'.*?\'\'\'", re.DOTALL)
 CPP_FILES = (".cpp", ".cc", ".cxx", ".c++", ".hpp", ".hh", ".hxx", ".h", ".h++")
 HEADERS = (".hpp", ".hh", ".hxx", ".h", ".h++")
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:[^\"\\\n]|\\.)*\"", re.DOTALL)
-_DIRECTIVE = re.compile(
+_COMMENT = on_use(r"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:[^\"\\\n]|\\.)*\"", re.DOTALL)
+_DIRECTIVE = on_use(
     r"^[ \t]*#[ \t]*(?:(?P<open>if\w*)|(?P<close>endif)|include[ \t]*[<\"](?P<path>[\w./-]+)[>\"])"
     r"(?P<rest>[^\n]*)",
     re.MULTILINE,
 )
 _MAX_DIRECTIVE = 500  # characters of an #include, behind which none is searched
-OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|[._]test\.")
+OF_TESTS = on_use(r"(^|/)tests?/|(^|/|_)test_|[._]test\.")
 _PlacedNames = Iterator[tuple[str, Location]]  # of packages, where a file names each
 
 
-class PackageUse(NamedTuple):
+class PackageUse(Named):
     """A package that a file uses.
 
     With `is_built`, CMake needs it, and no program that runs; with `is_for_tests`, only tests.
@@ -75,19 +78,24 @@ def used_packages(workspace: Workspace, package: Package) -> Iterator[PackageUse
     """Yield the packages that the files of a package use, and where."""
     for name, at in _used_at_run_time(workspace, package):
         yield PackageUse(name, at)
-    names = {other.name for other in workspace.packages}
+    names = workspace.own_packages
     for name, at in _asked_for(workspace, package):
         if name in names or is_released(name):
             yield PackageUse(name, at)
-    setup = package.installation
-    for required in setup.found_packages if setup is not None else ():
-        is_ros = required.name in names or is_released(required.name)
-        if is_ros and required.is_required and required.is_certain:
-            assert setup is not None
-            at = setup.location(required.at)
+    for required, at in required_by_cmake(package):
+        if required.name in names or is_released(required.name):
             yield PackageUse(required.name, at, True, required.is_for_tests)
     for name, at in _included(workspace, package, names):
         yield PackageUse(name, at, is_built=True)
+
+
+def required_by_cmake(package: Package) -> Iterator[tuple[FoundPackage, Location]]:
+    """Yield the packages that CMake certainly has to find, and where."""
+    setup = package.installation
+    for required in setup.found_packages if setup else ():
+        if required.is_required and required.is_certain:
+            assert setup
+            yield required, setup.location(required.at)
 
 
 def _used_at_run_time(workspace: Workspace, package: Package) -> _PlacedNames:
@@ -96,13 +104,13 @@ def _used_at_run_time(workspace: Workspace, package: Package) -> _PlacedNames:
         if owner is package:
             yield from _launched(launch)
     generated_at = workspace.code.interfaces[package.name].location
-    if generated_at is not None:
+    if generated_at:
         yield _RUNTIME, generated_at
-    names = {other.name for other in workspace.packages}
+    names = workspace.own_packages
     yield from _found_by_xacro(workspace, package, names)
     yield from _imported(workspace, package, names)
-    for path, tree in workspace.installed.trees:
-        if package.holds(path):
+    for tree in workspace.installed.trees:
+        if package.holds(tree.source.path):
             for _, section in sections_in(tree):
                 yield from _controller_packages(section, names)
     yield from _hardware_packages(workspace, package, names)
@@ -111,7 +119,7 @@ def _used_at_run_time(workspace: Workspace, package: Package) -> _PlacedNames:
 def _found_by_xacro(workspace: Workspace, package: Package, names: Collection[str]) -> _PlacedNames:
     """Yield the packages of paths in URDF and xacro. A misspelt own one is a mistake of files."""
     for name, at in named_in_robots(workspace, package):
-        workspace.charge(cost_of_guess(len(names)))
+        charge_guess(workspace, names)
         if name in names or package.depends_on(name) or near(name, names) is None:
             yield name, at
 
@@ -138,7 +146,7 @@ def _launched(launch: Launch) -> _PlacedNames:
     for passed in launch.passed:
         folder, _, inside = passed.path.partition("/")
         if folder == "share" and inside:
-            yield inside.partition("/")[0], passed.location
+            yield first_part(inside), passed.location
 
 
 def _asked_for(workspace: Workspace, package: Package) -> _PlacedNames:
@@ -191,7 +199,7 @@ def _is_of_ros(imported: "_ImportedModule", names: Collection[str]) -> bool:
     return is_known or (imported.is_installed and _is_code(name))
 
 
-class _ImportedModule(NamedTuple):
+class _ImportedModule(Named):
     """A module that a Python file imports, which is none of its package."""
 
     name: str
@@ -206,13 +214,14 @@ def imported_modules(workspace: Workspace, package: Package) -> Iterator[_Import
     modules = set()  # of the package, as far as their names say
     for path in package.tree.files:
         modules |= {part.removesuffix(".py") for part in path.split("/")}
-    setup, installed = package.installation, {*package.installed.values()}
-    python_packages = setup.packages if setup is not None else ()
+    setup = package.installation
+    installed = {*package.installed.values()}
+    python_packages = setup.packages if setup else ()
     own_folders = {name.partition(".")[0] for name in python_packages}
     for source in workspace.texts.read_sources(package, (".py",)):
         is_launch = is_launch_file(source.path)
         inside = source.path.removeprefix(package.path(""))
-        is_part = is_launch or inside in installed or inside.partition("/")[0] in own_folders
+        is_part = is_launch or inside in installed or first_part(inside) in own_folders
         is_part = is_part and not OF_TESTS.search(source.path)
         text = _without_long_texts(source.text)
         for match in _IMPORT.finditer(text):
@@ -239,7 +248,7 @@ def _list_modules(match: re.Match[str]) -> Iterator[tuple[str, int]]:
     offset = match.start(2)
     for part in match[2].split(","):
         name = re.match(r"\s*(\w+)", part)
-        if name is not None:
+        if name:
             yield name[1], offset + name.start(1)
         offset += len(part) + 1
 
@@ -249,13 +258,13 @@ def _controller_packages(section: YamlNode, names: Collection[str]) -> _PlacedNa
 
     `names` are the packages of the workspace, which may have controllers of their own.
     """
-    for inner in section.value.values() if isinstance(section.value, dict) else ():
+    for inner in section.table.values():
         kind = inner.get("type")
-        if kind is not None and is_known_controller(kind.text):
-            own_package = str(kind.text).partition("/")[0]
+        if kind and is_known_controller(kind.text):
+            own_package = first_part(str(kind.text))
             yield controller_row(kind.text).package or own_package, kind.location
-        elif kind is not None and str(kind.text).partition("/")[0] in names:
-            yield str(kind.text).partition("/")[0], kind.location
+        elif kind and first_part(str(kind.text)) in names:
+            yield first_part(str(kind.text)), kind.location
 
 
 def _hardware_packages(
@@ -265,7 +274,7 @@ def _hardware_packages(
     for robot in workspace.robots.known:
         for system in robot.systems:
             for plugin in system.iterfind("hardware/plugin"):
-                name = re.split("/|::", (plugin.text or "").strip())[0]
+                name = re.split("/|::", first_text(plugin))[0]
                 at = robot.place(plugin)
                 is_there = package.holds(at.path) and (name in names or is_released(name))
                 if is_there and not any(other.depends_on(name) for other in workspace.packages):
@@ -279,7 +288,7 @@ def _included(workspace: Workspace, package: Package, names: Collection[str]) ->
     not be needed, and a folder of the workspace that has the name may have the header.
     """
     setup = package.installation
-    if setup is None or not setup.targets:
+    if not setup or not setup.targets:
         return
     compiled = {path for target in setup.targets for path in target.sources}
     folders = _folders_of_headers(workspace)
@@ -289,10 +298,11 @@ def _included(workspace: Workspace, package: Package, names: Collection[str]) ->
         if inside not in compiled and not is_header:
             continue
         for header in included_headers(source):
-            name, at = header.path.partition("/")[0], header.location
+            name = first_part(header.path)
+            at = header.location
             if name == header.path:
                 continue
-            owners: Collection[str] = folders.get(name, ())
+            owners = folders.get(name, ())
             is_ros = name in names or _is_code(name)
             if is_ros and name != package.name and {*owners} <= {name}:
                 yield name, at
@@ -310,7 +320,7 @@ def _folders_of_headers(workspace: Workspace) -> Mapping[str, set[str]]:
     return owners
 
 
-class IncludedHeader(NamedTuple):
+class IncludedHeader(Named):
     """A header that a C++ file includes, by its path as it is written."""
 
     path: str
@@ -326,7 +336,8 @@ def included_headers(source: Source) -> Iterator[IncludedHeader]:
     text = source.text[: source.text.rfind("include") + _MAX_DIRECTIVE]
     if "/*" in text:
         text = _COMMENT.sub(_without_comment, text)
-    depth, is_first = 0, True
+    depth = 0
+    is_first = True
     for directive in _DIRECTIVE.finditer(text):
         if directive["open"]:
             is_guard = is_first and directive["open"] == "ifndef"

@@ -6,25 +6,26 @@ The rows of controllers, in the files of their packages, and of gazebo.toml say 
 which number.
 """
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain
 from math import hypot
-from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.names import closest
+from grader.base.names import closest, last_part
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.base.transforms import Y_AXIS, Vector, add_up, dot, minus, unit
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
-from grader.ros.known.package_rows import WheelRow, controller_row
+from grader.ros.known.package_rows import WheelRow
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint, Robot
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.urdf.rolling import mean
 from grader.ros.urdf.wheel_sizes import WheelSize, measure_wheel
+from grader.ros.xml.elements import first_text
 from grader.ros.xml.parsing import Element
 from grader.workspace.graph.gazebo_topics import name_system
 from grader.workspace.graph.started_controllers import (
@@ -47,7 +48,9 @@ from grader.workspace.rules.rule_table import (
     Rule,
 )
 
-_ENTRY = re.compile(r"(.*)\.(\d+)$")  # a parameter with a list, and the number of an entry
+_Span = tuple[float, float, str]  # a length, how far it may be off, and what it is
+
+_ENTRY = on_use(r"(.*)\.(\d+)$")  # a parameter with a list, and the number of an entry
 _TOLERANCE, _ROUNDING = 0.02, 0.002  # of a number; metres
 _LEVEL = 0.3  # the sine of the angle to the ground up to which an axle lies
 _SIDEWAYS = 0.9  # the cosine of the angle to the y axis up to which wheels drive forward or back
@@ -59,7 +62,7 @@ _MAX_TURN = 100.0  # radians between limits, of which a wheel of 0.1 m rolls 10 
 _MAX_WHEELS = 20  # that one parameter is about; each takes as long as the robot has joints
 
 
-class _Word(NamedTuple):
+class _Word(Named):
     """The text of a parameter, or an entry of its list, and its place."""
 
     text: str
@@ -69,7 +72,7 @@ class _Word(NamedTuple):
 _Parameters = Callable[[str], Sequence[_Word]]
 
 
-class _Source(NamedTuple):
+class _Source(Named):
     """What tells a robot of its wheels: the rows of its parameters, and what they are given."""
 
     name: str
@@ -82,7 +85,7 @@ class _Source(NamedTuple):
         words: list[_Word] = []
         for key in keys:
             entry = _ENTRY.fullmatch(key)
-            if entry is None:
+            if not entry:
                 words += self.parameters(key)
             else:
                 number = int(entry[2])
@@ -90,7 +93,7 @@ class _Source(NamedTuple):
         return words
 
 
-class _Wheels(NamedTuple):
+class _Wheels(Named):
     """The wheels of the groups of a parameter, in the frame of the robot's base."""
 
     base: str
@@ -103,7 +106,7 @@ class _Wheels(NamedTuple):
     @property
     def all(self) -> list[WheelSize]:
         """The wheels of all groups, each joint once."""
-        return [*{wheel.joint.name: wheel for wheel in chain(*self.groups)}.values()]
+        return list({wheel.joint.name: wheel for wheel in chain(*self.groups)}.values())
 
     @property
     def axle(self) -> Vector:
@@ -162,7 +165,7 @@ def _faults_under_all(source: _Source) -> Sequence[Mismatch]:
     """Return the faults under the first robot; none where the numbers are those of another one."""
     first: Sequence[Mismatch] = ()
     for robot in source.robots:
-        faults = [*_find_faults(source, Configuration(robot.robot))]
+        faults = list(_find_faults(source, Configuration(robot.robot)))
         if robot.root.find("gazebo/plugin") is None:  # nothing else stops a joint
             faults = [fault for fault in faults if fault.rule is not _WHEEL_LIMIT]
         if not faults:
@@ -174,9 +177,9 @@ def _faults_under_all(source: _Source) -> Sequence[Mismatch]:
 def _controllers(workspace: Workspace) -> Iterator[_Source]:
     sections = parameters_of_controllers(workspace)
     for controller in defined_controllers(workspace):
-        rows = controller_row(controller.type.text).wheels
+        rows = controller.row.wheels
         section = sections.get(controller.name)
-        if not rows or section is None:
+        if not rows or not section:
             continue
         source = _Source(controller.name, rows, _reader_of_yaml(section), ())
         keys = {key for row in rows.values() for key in chain(*row.of)}
@@ -207,7 +210,7 @@ def _meant(robot: Robot, name: str) -> str:
 def _reader_of_yaml(section: YamlNode) -> _Parameters:
     def read(key: str) -> list[_Word]:
         node = section.get(*key.split("."))
-        if node is None:
+        if not node:
             return []
         return [
             _Word(scalar.text, scalar.location) for scalar in (node.items or [node]) if scalar.text
@@ -222,19 +225,16 @@ def _plugins(workspace: Workspace) -> Iterator[_Source]:
             name = name_system(plugin)
             rows = gazebo().system.get(name, NO_SYSTEM).wheels
             if not rows:
-                name = plugin.get("filename", "").rpartition("/")[2]
+                name = last_part(plugin.get("filename", ""))
                 library = gazebo().library.get(name)
-                rows = library.wheels if library is not None else {}
+                rows = library.wheels if library else {}
             if rows:
                 yield _Source(name, rows, _reader_of_plugin(robot, plugin), [robot])
 
 
 def _reader_of_plugin(robot: KnownRobot, plugin: Element) -> _Parameters:
     def read(key: str) -> list[_Word]:
-        return [
-            _Word((child.text or "").strip(), robot.place(child))
-            for child in plugin.iterchildren(key)
-        ]
+        return [_Word(first_text(child), robot.place(child)) for child in plugin.iterchildren(key)]
 
     return read
 
@@ -244,11 +244,12 @@ def _find_faults(source: _Source, robot: Configuration) -> Mismatches:
     compared: set[str] = set()  # the joints whose sides and directions were compared
     rows = sorted(source.rows.items(), key=lambda row: row[1].number not in _SIDED)
     for key, row in rows:
-        kind, groups = row.number, [source.joints(keys) for keys in row.of]
+        kind = row.number
+        groups = [source.joints(keys) for keys in row.of]
         wheels = _measured(source, robot, groups)
-        if wheels is None:
+        if not wheels:
             continue
-        faults: list[Mismatch] = []
+        faults = []
         names = {wheel.joint.name for wheel in wheels.all}
         if compared.isdisjoint(names):
             compared |= names
@@ -299,7 +300,7 @@ def _joint(robot: Configuration, name: str) -> Joint:
     return robot.joint(_meant(robot.robot, name))
 
 
-class _PlacedWheels(NamedTuple):
+class _PlacedWheels(Named):
     """Wheels whose sides and directions are compared, with where their joints are named."""
 
     wheels: _Wheels
@@ -364,7 +365,8 @@ def _other_sides(placed: _PlacedWheels) -> Mismatches:
 
     It is certain unless they turn backward too, as where the front of the robot is its -x.
     """
-    wheels, base = placed.wheels, quoted(placed.wheels.base)
+    wheels = placed.wheels
+    base = quoted(placed.wheels.base)
     exchanged = _exchanged(wheels) if placed.kind in _SIDED else []
     if placed.are_all_exchanged:
         message = (
@@ -399,10 +401,11 @@ def _other_axes(placed: _PlacedWheels) -> Mismatches:
 
     Nothing is said where left and right are exchanged as well, which is said of the sides.
     """
-    wheels, base = placed.wheels, quoted(placed.wheels.base)
+    wheels = placed.wheels
+    base = quoted(placed.wheels.base)
     if placed.kind not in _ROLLING or placed.are_all_exchanged:
         return
-    across: list[WheelSize] = []
+    across = []
     if placed.kind in _SIDED:
         toward_left = _toward_left(wheels)
         across = [each for each in wheels.all if abs(dot(each.axis, toward_left)) < _LEVEL]
@@ -430,21 +433,24 @@ def _limited_wheels(placed: _PlacedWheels) -> Mismatches:
     if placed.kind not in _ROLLING or placed.kind not in _SIDED:
         return
     for wheel in placed.wheels.all:
-        joint, limit = wheel.joint, wheel.joint.limit
-        if joint.type != "revolute" or limit is None or limit.upper - limit.lower > _MAX_TURN:
+        joint = wheel.joint
+        limit = wheel.joint.limit
+        if joint.type != "revolute" or not limit or limit.upper - limit.lower > _MAX_TURN:
             continue
         message = (
             f"{quoted(joint.name)} turns from {limit.lower:.4g} to {limit.upper:.4g} rad, where "
             "the wheel stops: write type='continuous'"
         )
         at = limit.location or joint.location
-        if at is not None:
-            yield warning(_WHEEL_LIMIT, message, at.resolve(), placed.places[joint.name])
+        if at:
+            wrong = warning(_WHEEL_LIMIT, message, at.resolve(), placed.places[joint.name])
+            yield wrong.offering("revolute", "continuous", wrong.related)
 
 
 def _toward_left(wheels: _Wheels) -> Vector:
     """Return the direction from the right wheels to the left ones, or y where there is none."""
-    left, right = wheels.middle_of_group(0), wheels.middle_of_group(1)
+    left = wheels.middle_of_group(0)
+    right = wheels.middle_of_group(1)
     return unit((left[0] - right[0], left[1] - right[1], 0.0)) or Y_AXIS
 
 
@@ -462,10 +468,10 @@ def _joints(wheels: Sequence[WheelSize]) -> str:
 
 def _place(wheel: WheelSize) -> Location | None:
     location = wheel.joint.location
-    return location.resolve() if location is not None else None
+    return location.resolve() if location else None
 
 
-class _WheelNumber(NamedTuple):
+class _WheelNumber(Named):
     """A number that a source has for wheels."""
 
     key: str
@@ -514,12 +520,14 @@ def _other_distance(number: _WheelNumber, value: float, wheels: _Wheels) -> Mism
     It is certain for a negative number, and for twice or half the track of two wheels. The track of
     more than two wheels, which slip sideways, may be wider.
     """
-    key, at = number.key, number.word.location
+    key = number.key
+    at = number.word.location
     if value < 0.0:
         yield Mismatch(_WHEEL_DISTANCE, _negative(key, value), at)
         return
     measured, slack, what = _SPANS[number.kind](wheels)
-    low, high = measured - slack, measured + slack
+    low = measured - slack
+    high = measured + slack
     is_track = number.kind == "track"
     if len(wheels.all) > 2 and is_track:
         high = max(high, value)
@@ -590,23 +598,27 @@ def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Mismatc
 
     A negative radius certainly is a mistake.
     """
-    key, kind, at = number.key, number.kind, number.word.location
+    key = number.key
+    kind = number.kind
+    at = number.word.location
     if value < 0.0:
         yield Mismatch(_WHEEL_SIZE, _negative(key, value), at)
         return
     factor = 2.0 if kind == "diameter" else 1.0
     for wheel in _wheels_of_other_size(wheels, value, factor):
-        name, size = quoted(wheel.joint.name), factor * wheel.radii[0]
+        name = quoted(wheel.joint.name)
+        size = factor * wheel.radii[0]
         message = f"{key} is {value:g} m; the wheel of {name} has the {kind} {size:.4g} m"
         yield warning(_WHEEL_SIZE, message, at, _place(wheel))
 
 
-def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
+def _measure_track(wheels: _Wheels) -> _Span:
     """Return the distance of the left wheels from the right ones along the axles.
 
     With it, return by how much the width of wheels changes it, and what it is.
     """
-    left, right = wheels.middle_of_group(0), wheels.middle_of_group(1)
+    left = wheels.middle_of_group(0)
+    right = wheels.middle_of_group(1)
     widths = [wheel.half_width for wheel in wheels.all]
     slack = 2.0 * max([width for width in widths if width is not None], default=0.0)
     distance = abs(dot(minus(left, right), wheels.axle))
@@ -615,15 +627,16 @@ def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
     return distance, slack, f"the wheels of {wheels.names} are apart by"
 
 
-def _measure_wheelbase(wheels: _Wheels) -> tuple[float, float, str]:
+def _measure_wheelbase(wheels: _Wheels) -> _Span:
     """Return the distance of the front wheels from the rear ones across the axles."""
-    front, rear = wheels.middle_of_group(0), wheels.middle_of_group(1)
+    front = wheels.middle_of_group(0)
+    rear = wheels.middle_of_group(1)
     x, y, _ = wheels.axle
     distance = abs(dot(minus(front, rear), (y, -x, 0.0)))
     return distance, 0.0, f"the axles of {wheels.names} are apart by"
 
 
-def _measure_half_sum(wheels: _Wheels) -> tuple[float, float, str]:
+def _measure_half_sum(wheels: _Wheels) -> _Span:
     """Return half the track and half the wheelbase together."""
     track, slack, _ = _measure_track(wheels._replace(groups=wheels.groups[:2]))
     wheelbase, _, _ = _measure_wheelbase(wheels._replace(groups=wheels.groups[2:]))
@@ -631,7 +644,7 @@ def _measure_half_sum(wheels: _Wheels) -> tuple[float, float, str]:
     return (track + wheelbase) / 2.0, slack / 2.0, what
 
 
-def _measure_ring(wheels: _Wheels) -> tuple[float, float, str]:
+def _measure_ring(wheels: _Wheels) -> _Span:
     """Return the mean distance of wheels from the middle between them."""
     middle = mean(wheel.middle for wheel in wheels.all)
     away = [minus(wheel.middle, middle) for wheel in wheels.all]
@@ -640,7 +653,7 @@ def _measure_ring(wheels: _Wheels) -> tuple[float, float, str]:
     return distance, max(widths), f"the wheels of {wheels.names} are from their middle by"
 
 
-_SPANS: Mapping[str, Callable[[_Wheels], tuple[float, float, str]]] = {
+_SPANS = {
     "track": _measure_track,
     "pivots": _measure_track,
     "wheelbase": _measure_wheelbase,

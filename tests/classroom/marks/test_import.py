@@ -114,3 +114,16 @@ def test_a_new_mark_counts_though_a_clock_was_ahead(tmp_path: Path) -> None:
         folder / "lee.csv", timed(read(folder), importing(read(folder)).read(rows, "marks.csv")[0])
     )
     assert said(read(folder).counting["anna", "essay"]) == "2"
+
+
+def test_a_number_may_be_a_key_without_its_zeros(tmp_path: Path) -> None:
+    """3 is refused where 0003 is a key, though it is an id of another student; 09 is an id as it is written."""
+    marks = read(folder_of(tmp_path, {}))
+    students = (Student("carol", canvas="3", sis="09"), Student("0003"), Student("9"))
+    digests = {"carol": "d0a", "0003": "d0b", "9": "d0c"}
+    into = MarkImport(students, LAB, marks, digests, {}, {})
+    head = "student,criterion,points\n"
+    with pytest.raises(InputError, match="'3' may be '0003', changed by a spreadsheet"):
+        into.read(f"{head}3,grade,1\n".encode(), "marks.csv")
+    [mark], _ = into.read(f"{head}09,grade,1\n".encode(), "marks.csv")
+    assert mark.student == "carol"

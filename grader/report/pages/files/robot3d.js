@@ -63,6 +63,12 @@ function showRobot() {
   // the ground on which it is set down: it does not rise to get there
   const ground = drive ? Math.min(floor, drive.mass[2] - drive.fall[0][3]) : floor;
   const failed = new Set(robot.pins.map((pin) => pin.link));
+  // what a recording shows: the path of its base, and links that were recorded elsewhere
+  const recorded = {
+    path: /** @type {Solid | null} */ (null),
+    wrong: /** @type {{link: string, parent: string, pose: Pose}[]} */ ([]),
+    ground: floor,
+  };
 
   // --- WebGL ---
   const shader = (/** @type {number} */ type, /** @type {string} */ source) => {
@@ -212,7 +218,9 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     const channel = (/** @type {number} */ i) => parseInt(value.slice(i, i + 2), 16) / 255;
     return [channel(1), channel(3), channel(5), alpha];
   };
-  const isMoved = () => began || [...positions].some(([name, value]) => value !== START.get(name));
+  const isMoved = () =>
+    carried !== Transforms.IDENTITY ||
+    [...positions].some(([name, value]) => value !== START.get(name));
   /** Return whether a shape is a cylinder that a joint turns about its own axis. */
   const turns = (/** @type {Link} */ link, /** @type {Shape} */ shape) => {
     let [joint, turned] = [parents.get(link.name), shape.pose];
@@ -298,6 +306,11 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
         drawFrame(pose(link.name), isFrame ? 0.15 : 0.09);
       }
     }
+    for (const { link, parent, pose: T } of recorded.wrong) {
+      const [own, there] = [pose(link), Transforms.product(pose(parent), T)];
+      drawFrame(there, 0.09);
+      drawLine([own[3], own[7], own[11]], [there[3], there[7], there[11]], colour("--failed"));
+    }
     if (shows.ghost && !isMoved()) {
       for (const { name, ends } of axes) {
         drawLine(ends[0], ends[1], colour(`--axis-${name}`));
@@ -320,9 +333,18 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
     gl.uniformMatrix4fv(at.camera, false, projection());
-    const under = Transforms.along([0, 0, 1], began ? ground : floor);
+    const near = [carried[3], carried[7]].map((value) => Math.round(value / step) * step);
+    const under = Transforms.along([...near, began ? ground : recorded.ground], 1);
     draw({ solid: grid, pose: under, size: [1, 1, 1], rgba: colour("--line") }, 0, gl.LINES);
     drawSolids();
+    if (recorded.path) {
+      const rgba = colour("--link");
+      draw(
+        { solid: recorded.path, pose: Transforms.IDENTITY, size: [1, 1, 1], rgba },
+        0,
+        gl.LINE_STRIP,
+      );
+    }
     drawSigns();
     placePins();
     placeNames();
@@ -641,6 +663,12 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
       update();
     }
   };
+  /** Put the robot at a pose: the page has moved its joints. @param {Pose} at */
+  const carry = (at) => {
+    stop();
+    carried = at;
+    update();
+  };
   const reset = () => {
     stop();
     Object.assign(camera, HOME);
@@ -685,7 +713,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   render();
   return {
     ...{ camera, positions, move, select, render, reset, sliders, close, driveTo, stop },
-    ...{ solid, solids },
+    ...{ solid, solids, failed, recorded, carry, pose },
     poses: () => poses,
   };
 }

@@ -127,6 +127,7 @@
   const partsOf = (page) =>
     new Map([...PARTS, "main"].map((id) => [id, page.getElementById(id)?.cloneNode(true)]));
   let served = partsOf(document);
+  let played = showPlayback(0);
   const mark = () => {
     /** @type {Version} */
     const view = read().view;
@@ -168,6 +169,7 @@
       take("main", page);
       RobotView = showRobot();
       restore(kept);
+      played = showPlayback(played?.time() || 0);
       showMeshes();
       showCopies();
     }

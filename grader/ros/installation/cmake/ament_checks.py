@@ -4,17 +4,18 @@ colcon builds them: BUILD_TESTING is on, unless it is told otherwise. What else 
 if(BUILD_TESTING) is not evaluated, because it installs nothing.
 """
 
-import re
 from collections.abc import Iterator, Sequence
 
+from grader.base.patterns import on_use
 from grader.ros.installation.cmake.cmake_build import Build
+from grader.ros.installation.cmake.cmake_values import OF_INTERFACES
 from grader.ros.installation.cmake.language import Argument, Command
 from grader.ros.installation.installation import FoundPackage
 from grader.ros.known.cmake_words import cmake_words
 
 _SWITCH = "BUILD_TESTING"
-_GTEST = re.compile(r"ament_add_(?:ros_isolated_)?(g(?:test|mock))(?:_executable)?")
-_VARIABLE = re.compile(r"\$\{(\w+)\}|\$")
+_GTEST = on_use(r"ament_add_(?:ros_isolated_)?(g(?:test|mock))(?:_executable)?")
+_VARIABLE = on_use(r"\$\{(\w+)\}|\$")
 # With one of these, the command of a test may come from a package that is not known.
 _OTHER_WAYS = ("ament_auto", "ament_lint_auto_find_test_dependencies", "ament_cmake_ros")
 
@@ -48,7 +49,7 @@ def _check_sources(build: Build, commands: Sequence[Command]) -> None:
     """Note the tests with a source that is not there."""
     for command in commands:
         if _GTEST.fullmatch(command.name):
-            build.require_sources([*_sources(build, command)], command)
+            build.require_sources(list(_sources(build, command)), command)
 
 
 def _check_providers(build: Build, commands: Sequence[Command]) -> None:
@@ -58,7 +59,7 @@ def _check_providers(build: Build, commands: Sequence[Command]) -> None:
         if command.name == "find_package" and command.arguments:
             packages.add(command.arguments[0].text.lower())
         kind = _GTEST.fullmatch(command.name)
-        if kind is not None:
+        if kind:
             _require_provider(build, command, f"ament_cmake_{kind[1]}", packages)
 
 
@@ -69,12 +70,13 @@ def _require_provider(build: Build, command: Command, needed: str, packages: set
         return
     project = str(build.values.variables.get("PROJECT_NAME", "")).lower()
     others = packages - cmake_words().exports.keys() - cmake_words().without_tests - {project}
-    if any(not name.endswith(("_msgs", "_srvs", "_interfaces")) for name in others):
+    if any(not name.endswith(OF_INTERFACES) for name in others):
         return
     build.stop(
         f"CMake knows no command {command.name}(), because nothing finds the package {needed}",
         command.at,
         hint=f"; write find_package({needed} REQUIRED)",
+        change=("", f"find_package({needed} REQUIRED)\n"),
     )
 
 

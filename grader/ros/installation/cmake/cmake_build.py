@@ -1,18 +1,21 @@
 """The targets and the installed files of a CMakeLists.txt, and what stops its build."""
 
-import posixpath
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from fnmatch import translate
 from itertools import pairwise, takewhile
+from posixpath import basename, dirname, join, normpath, splitext
 
-from grader.base.names import MAX_GUESSES, closest, did_you_mean, near
+from grader.base.grouping import are_texts, distinct, texts_among
+from grader.base.names import MAX_GUESSES, closest, near
+from grader.base.patterns import on_use
 from grader.base.source import Source
+from grader.base.text import quoted
 from grader.files.limits import ignored_part
 from grader.ros.installation.cmake.cmake_targets import CmakeTargets
-from grader.ros.installation.cmake.cmake_values import ROOT, Text, Values
-from grader.ros.installation.cmake.language import Argument, Command
+from grader.ros.installation.cmake.cmake_values import OF_INTERFACES, ROOT, Text, Values
+from grader.ros.installation.cmake.language import Command
 from grader.ros.installation.file_search import EmptyGlob, PackageListing
 from grader.ros.installation.installation import (
     CmakeComponent,
@@ -26,6 +29,7 @@ from grader.ros.installation.installation import (
 )
 from grader.ros.installation.places import PREFIX
 from grader.ros.known.cmake_words import cmake_words
+from grader.ros.known.released import is_released
 from grader.ros.known.releases import Release
 from grader.ros.python.parse import START, Position
 from grader.ros.python.values import Undetermined, Unknown
@@ -33,7 +37,7 @@ from grader.ros.python.values import Undetermined, Unknown
 _MANIFEST = "package.xml"
 _GENERATE = "rosidl_generate_interfaces"
 _INCLUDED = "target_include_directories"
-_GENERATOR = re.compile(r"\$<|>")
+_GENERATOR = on_use(r"\$<|>")
 _Options = Mapping[str, list[str]]
 _Groups = Sequence[tuple[str, list[str]]]  # arguments by the keyword before them
 
@@ -43,7 +47,10 @@ class Build:
 
     def __init__(self, listing: PackageListing, values: Values, name: str, text: str) -> None:
         """`name` is the one in package.xml, `text` that of CMakeLists.txt."""
-        self.listing, self.values, self.name, self.text = listing, values, name, text
+        self.listing = listing
+        self.values = values
+        self.name = name
+        self.text = text
         self.targets: dict[str, str] = {}  # executable, library, interfaces or unknown
         self.made = CmakeTargets(listing)
         self.copies: dict[str, InstalledFile] = {}  # by the path below the prefix
@@ -59,6 +66,7 @@ class Build:
         self.unknown: list[Unknown] = []
         self.doubts: list[Unknown] = []
         self.last = START
+        self.is_plain = False  # whether colcon builds it as CMake without ament
         self._package_at: Position | None = None  # where ament_package() is called
         self._automatic: list[str] = []  # targets that ament_auto_package() installs
         self._guesses = 0
@@ -70,13 +78,13 @@ class Build:
 
     def result(self, source: Source) -> Installation:
         """Return what is known at the end."""
-        if self._package_at is None and not self.doubts:
+        if not self._package_at and not self.doubts and not self.is_plain:
             self.stop(
                 "CMakeLists.txt does not call ament_package(), so ROS 2 does not find the package",
                 self.last,
             )
         self._name_programs()
-        unclosed: list[UnclosedExpression] = []
+        unclosed = []
         for expression in self._unclosed:
             if expression.target in self._exported and expression.command == _INCLUDED:
                 reason = f"{expression.message}, so CMake cannot export {expression.target!r}"
@@ -94,7 +102,7 @@ class Build:
             stops=tuple(self.stops),
             later_stops=tuple(first_stops.values()),
             empty=tuple(self.listing.empty),
-            unknown=tuple(dict.fromkeys([*self.doubts, *self.unknown])),
+            unknown=distinct(self.doubts + self.unknown),
             doubt=self.doubts[0] if self.doubts else None,
             called_at=self._package_at or self.last,
             files_at=self._package_at or self.last,
@@ -127,32 +135,42 @@ class Build:
         self.doubts.append(self.values.uncertain or Unknown(reason, at))
         self.values.is_opaque = True
 
-    def stop(self, reason: str, at: Position, path: str = "", hint: str = "") -> None:
-        """Note an error that stops the build."""
-        if self.values.uncertain is not None:
+    def stop(
+        self,
+        reason: str,
+        at: Position,
+        path: str = "",
+        hint: str = "",
+        change: tuple[str, str] = ("", ""),
+    ) -> None:
+        """Note an error that stops the build; a change is what is written and what is meant."""
+        if change[0] and change[1]:
+            hint = f"; did you mean {quoted(change[1])}?"
+        if self.values.uncertain:
             self.doubts.append(self.values.uncertain)
         else:
-            self.stops.append(InstallError(path, reason, at, hint, by="install()"))
+            self.stops.append(InstallError(path, reason, at, hint, "install()", change))
 
     def stop_later(self, reason: str, since: Release, at: Position, instead: str) -> None:
         """Note an error that stops the build from a release on."""
-        if self.values.uncertain is None:
+        if not self.values.uncertain:
             self.later_stops.append(LaterStop(reason, since, at, instead))
 
-    def _guess(self, name: str, known: Collection[str]) -> str:
-        """Return which name may be meant, for the end of a message.
+    def _guess(self, name: str, known: Collection[str]) -> tuple[str, str]:
+        """Return a name, and which one may be meant by it; empty if none is close.
 
         This is done for the first missing names only, because comparing names takes long.
         """
         self._guesses += 1
-        return did_you_mean(name, known) if self._guesses <= MAX_GUESSES else ""
+        meant = closest(name, known) if self._guesses <= MAX_GUESSES else None
+        return name, meant or ""
 
     # --- Files
     # ----------------------------------------------------------------------
 
     def inside(self, text: str) -> str | None:
         """Return a path as one in the package, without dots; None for one outside of it."""
-        path = posixpath.normpath("" if text == ROOT else text.removeprefix(f"{ROOT}/"))
+        path = normpath("" if text == ROOT else text.removeprefix(f"{ROOT}/"))
         if path == ".":
             return ""
         return None if path.startswith(("/", "..")) else path
@@ -160,7 +178,7 @@ class Build:
     def _source(self, text: str) -> str | None:
         """Return the path of a source, whose ending may lack (policy CMP0115 of CMake)."""
         path = self.inside(text)
-        if path is None or posixpath.splitext(path)[1] or path in self.listing.files:
+        if path is None or splitext(path)[1] or path in self.listing.files:
             return path
         for ending in cmake_words().source_endings:
             if path + ending in self.listing.files:
@@ -189,7 +207,7 @@ class Build:
         path = self.inside(text)
         if path is None:
             return None
-        folder = posixpath.dirname(path)
+        folder = dirname(path)
         is_there = self._has(path)
         if not is_there and folder and self._has(folder) and not self.listing.names(folder):
             return None
@@ -202,8 +220,9 @@ class Build:
         if words[:1] == ["RELATIVE"]:
             if words[1:2] != [ROOT]:
                 return Unknown("a search relative to another folder is not evaluated", at)
-            words, start = words[2:], ""
-        found_paths: set[str] = set()
+            words = words[2:]
+            start = ""
+        found_paths = set()
         for word in words:
             pattern = self.inside(word) if isinstance(word, str) else None
             if pattern is None or words[0] == "LIST_DIRECTORIES":
@@ -229,26 +248,25 @@ class Build:
         folder, _, name = pattern.rpartition("/")
         matches = re.compile(translate(name)).match
         below = self.listing.files_below(folder)
-        return [path for path in below if matches(posixpath.basename(path))]
+        return [path for path in below if matches(basename(path))]
 
     # --- Targets
     # ----------------------------------------------------------------------
 
     def add_target(self, command: Command) -> None:
         """Add an executable or a library, whose sources must exist."""
-        texts = self.values.texts(command.arguments)
-        name = (texts or [""])[0]
+        name, texts = self.values.first_and_rest(command)
         if isinstance(name, Unknown):
             self.give_up("the name of a target is not known", command.at)
             return
         kind = "executable" if command.name.endswith("executable") else "library"
-        self.targets[name] = kind if self.values.uncertain is None else "unknown"
-        is_certain = self.values.uncertain is None
-        self.made.add(name, kind, command.at, is_certain=is_certain, texts=texts[1:])
+        self.targets[name] = kind if not self.values.uncertain else "unknown"
+        is_certain = not self.values.uncertain
+        self.made.add(name, kind, command.at, is_certain=is_certain, texts=texts)
         if command.name.startswith("ament_auto"):
             self._automatic.append(name)
             self.made.install(name)
-        words = [text for text in texts[1:] if isinstance(text, str)]
+        words = texts_among(texts)
         if {"IMPORTED", "ALIAS", "DIRECTORY"}.isdisjoint(words):
             self.require_sources(words, command)
 
@@ -257,10 +275,10 @@ class Build:
         name = self.values.first(command)
         if command.name.startswith("ament_add_g") and not self.values.is_opaque:
             texts = self.values.texts(command.arguments[1:])
-            words = [*takewhile(lambda text: text not in cmake_words().test_keywords, texts)]
-            self.require_sources([text for text in words if isinstance(text, str)], command)
+            words = list(takewhile(lambda text: text not in cmake_words().test_keywords, texts))
+            self.require_sources(texts_among(words), command)
         if isinstance(name, str):
-            self.targets[name] = "executable" if self.values.uncertain is None else "unknown"
+            self.targets[name] = "executable" if not self.values.uncertain else "unknown"
         else:
             self.may_have_other_targets = True
 
@@ -284,15 +302,15 @@ class Build:
         """Stop the build at a source that is not there."""
         for source in sources:
             path = self.inside(source) or ""
-            is_file = source not in cmake_words().target_keywords and posixpath.splitext(path)[1]
+            is_file = source not in cmake_words().target_keywords and splitext(path)[1]
             if is_file and self._has(path) is False:
                 self._stop_missing(command, path)
 
     def require_closed(self, command: Command) -> None:
         """Note a generator expression in a command of a target that is not closed."""
-        if self.values.uncertain is not None or not command.name.startswith("target_"):
+        if self.values.uncertain or not command.name.startswith("target_"):
             return
-        opened: list[Argument] = []
+        opened = []
         for argument in command.arguments:
             for piece in _GENERATOR.findall(argument.text):
                 if piece == "$<":
@@ -305,14 +323,12 @@ class Build:
             self._unclosed.append(unclosed)
 
     def _stop_missing(self, command: Command, path: str) -> None:
-        hint = self._guess(path, self.listing.files)
-        self.stop(
-            f"{command.name}() lists {path!r}, but there is no such file", command.at, hint=hint
-        )
+        reason = f"{command.name}() lists {path!r}, but there is no such file"
+        self.stop(reason, command.at, change=self._guess(path, self.listing.files))
 
     def use_target(self, command: Command) -> None:
         """Note a target that is not defined, and a package that was not found."""
-        name, *rest = self.values.texts(command.arguments) or [""]
+        name, rest = self.values.first_and_rest(command)
         if isinstance(name, Unknown):
             return
         names_packages = command.name == "ament_target_dependencies"
@@ -324,11 +340,11 @@ class Build:
             return
         if name not in self.targets:
             self._stop_target(command, name)
-        self._use_packages(command, rest if names_packages else ())
+        self._use_packages(command, rest if names_packages else _owners_of_targets(rest))
 
     def _own_links(self, command: Command) -> list[Text]:
         """Return what a target links, without libraries of others whose names are not known."""
-        links: list[Text] = []
+        links = []
         for argument in command.arguments[1:]:
             texts = self.values.expanded(argument)
             is_unknown = any(isinstance(text, Unknown) for text in texts)
@@ -343,6 +359,8 @@ class Build:
         for text in texts:
             if not isinstance(text, str) or not text.islower() or text in (reached or packages):
                 continue
+            if self.values.finds_interfaces and text.endswith(OF_INTERFACES):
+                continue
             self.listing.budget.charge(len(packages))
             # What is found may export the package, unless it is surely misspelt.
             if reached is not None or near(text, packages) is not None:
@@ -355,12 +373,8 @@ class Build:
         if self.may_have_other_targets and near(name, self.targets) is None:
             self._leave_open(Unknown(f"another project may have the target {name}", command.at))
             return
-        hint = self._guess(name, self.targets)
-        self.stop(
-            f"{command.name}() names the target {name!r}, which is not defined",
-            command.at,
-            hint=hint,
-        )
+        reason = f"{command.name}() names the target {name!r}, which is not defined"
+        self.stop(reason, command.at, change=self._guess(name, self.targets))
 
     def register_component(self, command: Command) -> None:
         """Install the program that rclcpp_components_register_node() makes.
@@ -369,37 +383,39 @@ class Build:
         """
         texts = self.values.texts(command.arguments)
         after = dict(pairwise(texts))
-        name, library, plugin = after.get("EXECUTABLE", ""), texts[:1], after.get("PLUGIN")
+        name = after.get("EXECUTABLE", "")
+        library = texts[:1]
+        plugin = after.get("PLUGIN")
         if isinstance(plugin, str) and library and isinstance(library[0], str):
             component = CmakeComponent(plugin, command.at, name if isinstance(name, str) else "")
             self.made.register(library[0], component)
         if isinstance(name, Unknown):
             self.give_up("the name of a program is not known", command.at)
-        elif name and self.values.uncertain is None:
+        elif name and not self.values.uncertain:
             self.programs.add(f"lib/{self._project()}/{name}")
         elif name:
             self._leave_open(Unknown(f"the program {name} is not known", command.at))
 
     def register_components(self, command: Command) -> None:
         """Note the classes that rclcpp_components_register_nodes() registers."""
-        library, *plugins = self.values.texts(command.arguments) or [""]
+        library, plugins = self.values.first_and_rest(command)
         for plugin in plugins:
             if isinstance(library, str) and isinstance(plugin, str):
                 self.made.register(library, CmakeComponent(plugin, command.at))
 
     def add_sources(self, command: Command) -> None:
         """Add sources to a target."""
-        name, *texts = self.values.texts(command.arguments) or [""]
+        name, texts = self.values.first_and_rest(command)
         if isinstance(name, str):
             doubt = self.values.uncertain
-            self.made.add_sources(name, [*texts, *([doubt] if doubt is not None else [])])
+            self.made.add_sources(name, [*texts, *([doubt] if doubt else [])])
 
     def generate_interfaces(self, command: Command) -> None:
         """Install the message, service and action files of a package."""
         texts = self.values.texts(command.arguments)
         keywords = cmake_words().interface_keywords
-        words = [*takewhile(lambda text: text not in keywords, texts)]
-        known = [text for text in words if isinstance(text, str)]
+        words = list(takewhile(lambda text: text not in keywords, texts))
+        known = texts_among(words)
         if not words or len(known) < len(words):
             self.interfaces.append(GeneratedInterfaces(command.at, is_certain=False))
             self.give_up("the arguments of rosidl_generate_interfaces() are not known", command.at)
@@ -411,12 +427,12 @@ class Build:
         groups: dict[str, list[str]] = {}
         for keyword, items in _groups([str(text) for text in rest], keywords):
             groups.setdefault(keyword, []).extend(items)
-        is_known = len(made) == len(files) and all(isinstance(text, str) for text in rest)
+        is_known = len(made) == len(files) and are_texts(rest)
         interfaces = GeneratedInterfaces(
             command.at,
             tuple(made),
             tuple(groups.get("DEPENDENCIES", ())),
-            is_certain=is_known and self.values.uncertain is None and not self._may_find_more,
+            is_certain=is_known and not self.values.uncertain and not self._may_find_more,
             needs_group=groups.keys().isdisjoint(("SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")),
         )
         self.interfaces.append(interfaces)
@@ -457,7 +473,7 @@ class Build:
         self._stop_missing(command, path)
         self.listing.budget.charge(len(self.listing.files))
         meant = closest(path, self.listing.files)
-        if meant is None or not meant.endswith(posixpath.splitext(path)[1]):
+        if meant is None or not meant.endswith(splitext(path)[1]):
             return None
         return meant  # as which the rest is read
 
@@ -469,7 +485,7 @@ class Build:
 
         The name of the project must be that in package.xml.
         """
-        if self.values.uncertain is not None:
+        if self.values.uncertain:
             self.give_up("it is not known whether ament_package() is called", command.at)
             return
         self._package_at = command.at
@@ -535,26 +551,22 @@ class Build:
         if kind in ("EXPORT", "RUNTIME_DEPENDENCY_SET"):
             return
         unknown = next((text for text in texts if isinstance(text, Unknown)), None)
-        if unknown is not None:
+        groups = _groups([str(text) for text in texts[1:]], cmake_words().install_keywords)
+        if unknown:
             self._leave_open(unknown)
         elif kind not in ("DIRECTORY", "FILES", "PROGRAMS", "TARGETS"):
             self._leave_open(Unknown(f"install({kind} ...) is not evaluated", command.at))
-        else:
-            self._install_known(str(kind), [*map(str, texts[1:])], command)
-
-    def _install_known(self, kind: str, words: Sequence[str], command: Command) -> None:
-        """Install what the known arguments of install() list."""
-        groups = _groups(words, cmake_words().install_keywords)
-        if kind == "TARGETS":
+        elif kind == "TARGETS":
             self._install_targets(groups, command)
         elif groups[0][1]:  # without paths, CMake does not look at the rest
-            self._install_paths(kind, groups, command)
+            self._install_paths(str(kind), groups, command)
 
     def _install_paths(self, kind: str, groups: _Groups, command: Command) -> None:
         """Install files, programs, or what is in folders."""
         options = dict(groups[1:])
         texts = groups[0][1]
-        target, before = self._destination(options, command), set(self.copies)
+        target = self._destination(options, command)
+        before = set(self.copies)
         if target is not None and kind == "DIRECTORY":
             for text in texts:
                 self._copy_folder(text, target, command, groups)
@@ -579,7 +591,7 @@ class Build:
             else:
                 self.stop("install() has no DESTINATION", command.at)
             return None
-        target = posixpath.normpath(values[0].removeprefix(f"{PREFIX}/"))
+        target = normpath(values[0].removeprefix(f"{PREFIX}/"))
         if target.startswith(("/", "..")):
             self._leave_open(Unknown(f"{target} is outside of the prefix", command.at))
             return None
@@ -595,7 +607,7 @@ class Build:
             self.made.install(name)
             if known is None and not self.values.is_opaque:
                 self._stop_target(command, name)
-            elif known in (None, "unknown") or self.values.uncertain is not None:
+            elif known in (None, "unknown") or self.values.uncertain:
                 self._leave_open(Unknown(f"the target {name} is not known", command.at))
             elif known == "executable":
                 self._installed.append((target, name))
@@ -611,25 +623,22 @@ class Build:
 
     def _copy_file(self, text: str, target: str, command: Command, options: _Options) -> None:
         path = self.inside(text)
-        if path is None:
+        state = self._has(path) if path is not None else None
+        if path is None or (state is None and path not in self.listing.files):
             self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
-            return
-        state = self._has(path)
-        if path in self.listing.files:
-            name = [*options.get("RENAME", ()), posixpath.basename(path)][0]
-            self._copy(path, posixpath.normpath(posixpath.join(target, name)), command.at)
-        elif state is None:
-            self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
+        elif path in self.listing.files:
+            name = [*options.get("RENAME", ()), basename(path)][0]
+            self._copy(path, normpath(join(target, name)), command.at)
         elif state:
-            reason = "it is a folder: write install(DIRECTORY ...)"
-            self.stop(reason, command.at, path or text)
+            self.stop("it is a folder: write install(DIRECTORY ...)", command.at, path or text)
         elif "OPTIONAL" not in options:
-            hint = self._guess(path, self.listing.files)
-            self.stop("there is no such file", command.at, path or text, hint)
+            change = self._guess(path, self.listing.files)
+            self.stop("there is no such file", command.at, path or text, change=change)
 
     def _copy_folder(self, text: str, target: str, command: Command, groups: _Groups) -> None:
         """Install the files of a folder; with a slash at its end without its own name."""
-        options, patterns = dict(groups), _Patterns(groups)
+        options = dict(groups)
+        patterns = _Patterns(groups)
         path = self.inside(text)
         state = self._has(path) if path is not None else None
         if path is None or state is None or patterns.has_regex or text == ".":
@@ -641,31 +650,22 @@ class Build:
         elif not state and patterns.is_limited:
             pass  # CMake takes it for a file that no pattern matches
         elif not state and "OPTIONAL" not in options:
-            guess = self._guess(path, self.listing.folders)
-            self.stop("there is no such folder", command.at, path, guess)
+            change = self._guess(path, self.listing.folders)
+            self.stop("there is no such folder", command.at, path, change=change)
         else:
-            if text.endswith("/"):
-                above = target
-            else:
-                above = posixpath.join(target, posixpath.basename(path))
+            above = target if text.endswith("/") else join(target, basename(path))
             self._copy_below(path, above, patterns, command)
 
     def _copy_below(self, path: str, above: str, patterns: "_Patterns", command: Command) -> None:
         """Install the files below a folder that patterns include."""
-        for file in self._below(path, patterns):
-            target = posixpath.normpath(posixpath.join(above, file))
-            self._copy(posixpath.join(path, file), target, command.at)
-
-    def _below(self, folder: str, patterns: "_Patterns") -> Iterator[str]:
-        """Yield the paths of the files below a folder, as seen from it."""
-        start = f"{folder}/" if folder else ""
-        for file in self.listing.files_below(folder):
+        for file in self.listing.files_below(path):
             self.listing.budget.charge(patterns.count * (1 + file.count("/")), len(file))
-            if patterns.include(folder, file[len(start) :]):
-                yield file[len(start) :]
+            name = file.removeprefix(f"{path}/")
+            if patterns.include(path, name):
+                self._copy(file, normpath(join(above, name)), command.at)
 
     def _copy(self, path: str, target: str, at: Position) -> None:
-        if self.values.uncertain is not None:
+        if self.values.uncertain:
             self.unknown.append(self.values.uncertain)
         else:
             self.copies[target] = InstalledFile(path, target, at)
@@ -711,6 +711,12 @@ class _Patterns:
         return not self.is_limited or any(pattern.match(reached[-1]) for pattern in self._included)
 
 
+def _owners_of_targets(texts: Sequence[Text]) -> list[Text]:
+    """Return the packages of ROS 2 whose targets are linked, as rclcpp::rclcpp is."""
+    owners = [text.partition("::")[0] for text in texts if isinstance(text, str) and "::" in text]
+    return [owner for owner in owners if is_released(owner)]
+
+
 def _groups(texts: Sequence[str], keywords: frozenset[str]) -> list[tuple[str, list[str]]]:
     """Return arguments by the keyword before them; the first ones have none."""
     groups: list[tuple[str, list[str]]] = [("", [])]
@@ -747,10 +753,11 @@ def _folder_of_programs(groups: _Groups) -> str:
 
     Of several destinations of one kind, the last counts (CMake 3.25, run).
     """
-    kind, places = "", dict[str, str]()
+    kind = ""
+    places = {}
     for keyword, values in groups[1:]:
         if keyword in cmake_words().artifacts:
             kind = keyword
         elif keyword == "DESTINATION" and values:
-            places[kind] = posixpath.normpath(values[0].removeprefix(f"{PREFIX}/"))
+            places[kind] = normpath(values[0].removeprefix(f"{PREFIX}/"))
     return places.get("RUNTIME") or places.get("") or "bin"

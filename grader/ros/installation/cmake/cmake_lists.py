@@ -4,16 +4,18 @@ What CMake and ament_cmake certainly do is known; modules, and commands that are
 undecided what they could touch.
 """
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 
+from grader.base.grouping import texts_among
 from grader.base.names import near
+from grader.base.patterns import on_use
 from grader.base.source import Source
 from grader.files.tree import Tree
 from grader.ros.installation.cmake.ament_checks import check_tests
 from grader.ros.installation.cmake.cmake_build import BUILD_COMMANDS, Build
 from grader.ros.installation.cmake.cmake_values import (
+    OF_INTERFACES,
     Text,
     Values,
     joined,
@@ -38,7 +40,7 @@ from grader.ros.python.values import Unknown
 
 _MAX_DEPTH = 60  # blocks and calls in each other
 _PARTS_A_CALL = 10  # for about as long as it takes
-_VERSION = re.compile(r"\d{1,4}(\.\d{1,4}){0,3}")
+_VERSION = on_use(r"\d{1,4}(\.\d{1,4}){0,3}")
 
 
 class _Returns(Exception):
@@ -46,11 +48,17 @@ class _Returns(Exception):
 
 
 def read_cmake(
-    text: str, path: str, tree: Tree, name: str, budget: Budget | None = None
+    text: str,
+    path: str,
+    tree: Tree,
+    name: str,
+    budget: Budget | None = None,
+    *,
+    is_plain: bool = False,
 ) -> Installation:
     """Evaluate the CMakeLists.txt of a package with these files, which package.xml gives this name.
 
-    It never raises.
+    It never raises. A package of `is_plain` CMake needs no ament_package().
     """
     source = Source(path, text)
     try:
@@ -61,7 +69,8 @@ def read_cmake(
         )
     listing = PackageListing(tree, budget)
     build = Build(listing, Values(listing.budget), name, text)
-    every_command = [*all_commands(commands)]
+    build.is_plain = is_plain
+    every_command = list(all_commands(commands))
     names = {command.name for command in every_command}
     build.may_have_other_targets = not names.isdisjoint(cmake_words().target_makers)
     try:
@@ -79,7 +88,7 @@ def _newest_minimum(texts: Sequence[Text]) -> tuple[int, ...] | None:
 
     The result is None where it is not known.
     """
-    words = [text for text in texts if isinstance(text, str)]
+    words = texts_among(texts)
     if len(words) < len(texts) or words[:1] != ["VERSION"] or len(words) < 2:
         return None
     newest = words[1].rpartition("...")[2]
@@ -92,7 +101,8 @@ class _Evaluation:
     """Runs the commands of a file."""
 
     def __init__(self, build: Build) -> None:
-        self.build, self.values = build, build.values
+        self.build = build
+        self.values = build.values
         self.own: dict[str, Command] = {}  # functions and macros
         self._depth = 0  # of blocks and calls in each other
         self._for_outside: dict[str, Text] = {}  # what the current function sets with PARENT_SCOPE
@@ -148,13 +158,14 @@ class _Evaluation:
             f"CMake knows no command {command.name}(), because nothing finds the package {needed}",
             command.at,
             hint=f"; write find_package({needed} REQUIRED)",
+            change=("", f"find_package({needed} REQUIRED)\n"),
         )
         self.values.packages.add(needed)
 
     def _note_release(self, command: Command) -> None:
         """Note a command that later releases do not have, or a version that their CMake refuses."""
         gone = cmake_words().gone_command(command.name)
-        if gone is not None and command.name not in self.own:
+        if gone and command.name not in self.own:
             first = RELEASES[RELEASES.index(gone.until) + 1]
             reason = f"CMake knows no command {command.name}()"
             self.build.stop_later(reason, first, command.at, f"use {gone.instead}")
@@ -186,7 +197,8 @@ class _Evaluation:
 
     def _maybe(self, commands: Sequence[Command], reason: Unknown) -> None:
         """Evaluate commands that may run, or may run several times."""
-        before, self.values.uncertain = self.values.uncertain, self.values.uncertain or reason
+        before = self.values.uncertain
+        self.values.uncertain = self.values.uncertain or reason
         try:
             self.run(commands)
         finally:
@@ -201,7 +213,7 @@ class _Evaluation:
                 doubt = doubt or Unknown(
                     f"the condition of {branch.name}() is not known", branch.at
                 )
-            if holds is not False and doubt is not None:
+            if holds is not False and doubt:
                 self._maybe(branch.body, doubt)
             elif holds:
                 self.run(branch.body)
@@ -209,7 +221,7 @@ class _Evaluation:
                 return
 
     def _holds(self, command: Command) -> bool | None:
-        tokens: list[tuple[Text, bool]] = []
+        tokens = []
         for argument in command.arguments:
             is_plain = argument.kind in ("unquoted", "paren")
             tokens += [(text, is_plain) for text in self.values.expanded(argument)]
@@ -217,16 +229,15 @@ class _Evaluation:
 
     def foreach(self, command: Command) -> None:
         """Evaluate a loop over known items, and its body once for each that is not known."""
-        texts = self.values.texts(command.arguments)
-        name, items = (texts or [""])[0], texts[1:]
+        name, items = self.values.first_and_rest(command)
         if items[:1] == ["IN"]:
-            items = [*self._items(items[1:], command.at)]
+            items = list(self._items(items[1:], command.at))
         elif items[:1] == ["RANGE"]:
             items = [Unknown("a range is not evaluated", command.at)]
         for item in items:
             doubt = next((text for text in (name, item) if isinstance(text, Unknown)), None)
             self.values.assign(str(name), item)
-            if doubt is not None:
+            if doubt:
                 self._maybe(command.body, doubt)
             else:
                 self.run(command.body)
@@ -277,7 +288,7 @@ class _Evaluation:
 
     def return_(self, command: Command) -> None:
         """End the file, or note that it may end here."""
-        if self.values.uncertain is None:
+        if not self.values.uncertain:
             raise _Returns
         self.build.give_up("return() may end the file", command.at)
 
@@ -293,7 +304,7 @@ class _Evaluation:
 
     def set_(self, command: Command) -> None:
         """Set or unset a variable."""
-        name, *values = self.values.texts(command.arguments) or [""]
+        name, values = self.values.first_and_rest(command)
         if isinstance(name, Unknown):
             self.values.is_opaque = True
             return
@@ -309,7 +320,7 @@ class _Evaluation:
 
     def option(self, command: Command) -> None:
         """Set an option to its default, which colcon does not change."""
-        name, *rest = self.values.texts(command.arguments) or [""]
+        name, rest = self.values.first_and_rest(command)
         if isinstance(name, str) and name not in self.values.variables:
             self.values.assign(name, rest[1] if len(rest) > 1 else "OFF")
 
@@ -335,7 +346,7 @@ class _Evaluation:
 
         One that is surely misspelt stops the build, if it is required, and is not found.
         """
-        name, *words = self.values.texts(command.arguments) or [""]
+        name, words = self.values.first_and_rest(command)
         if isinstance(name, Unknown):
             self.values.is_opaque = True
             return
@@ -344,13 +355,13 @@ class _Evaluation:
         if meant is not None and not is_released(name):
             if "REQUIRED" not in words:
                 return
-            hint = f"; did you mean {meant!r}?"
-            self.build.stop(f"there is no package {name!r}", command.at, hint=hint)
+            self.build.stop(f"there is no package {name!r}", command.at, change=(name, meant))
             name = meant
-        is_certain = self.values.uncertain is None
+        is_certain = not self.values.uncertain
         looked_for = FoundPackage(name, command.at, "REQUIRED" in words, is_certain)
         self.build.found_packages.append(looked_for)
         self.values.packages.add(name.lower())
+        self.values.finds_interfaces |= name not in known and name.endswith(OF_INTERFACES)
         self.values.assign(f"{name}_FOUND", "1")
 
     def file_(self, command: Command) -> None:

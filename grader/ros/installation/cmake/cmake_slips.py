@@ -1,10 +1,10 @@
 """The slips of a CMakeLists.txt: words for which CMake stops or installs files elsewhere."""
 
-import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 
 from grader.base.names import MAX_GUESSES, near
-from grader.base.slips import Slip
+from grader.base.patterns import on_use
+from grader.base.slips import Slip, Slips
 from grader.base.source import Source
 from grader.base.text import quoted
 from grader.files.tree import Tree
@@ -20,8 +20,9 @@ from grader.ros.known.cmake_words import cmake_words
 from grader.ros.python.parse import Position, location_in
 
 _KINDS = frozenset({"DIRECTORY", "FILES", "PROGRAMS", "TARGETS"})
-_VARIABLE = re.compile(r"\$\{(\w+)\}")
-_COMMAND = re.compile(r"\s*[A-Za-z_]\w*\s*\(")
+_VARIABLE = on_use(r"\$\{(\w+)\}")
+_UNMARKED = on_use(r"\$\{\w+\}|(?:\$\(|\$|\{)(\w+)[)}]?|(?<=/)(\w+)(?=/|$)")
+_COMMAND = on_use(r"\s*[A-Za-z_]\w*\s*\(")
 
 
 def cmake_slips(source: Source, tree: Tree, name: str, dependencies: Iterable[str]) -> list[Slip]:
@@ -29,12 +30,12 @@ def cmake_slips(source: Source, tree: Tree, name: str, dependencies: Iterable[st
     try:
         commands = parse_cmake(source)
     except CMakeFault as fault:
-        return [*_unclosed(source, fault)]
+        return list(_unclosed(source, fault))
     reader = _CMakeSlips(source, tree, name, frozenset(dependencies))
-    return [*reader.found(commands)]
+    return list(reader.found(commands))
 
 
-def _unclosed(source: Source, fault: CMakeFault) -> Iterator[Slip]:
+def _unclosed(source: Source, fault: CMakeFault) -> Slips:
     """Yield the parenthesis that a command lacks: it belongs before the next command."""
     if not fault.is_certain or fault.args[0] != "a parenthesis is not closed":
         return
@@ -63,15 +64,17 @@ class _CMakeSlips:
     """The search for the slips in the commands of a file."""
 
     def __init__(self, source: Source, tree: Tree, name: str, dependencies: frozenset[str]) -> None:
-        self._source, self._tree = source, tree
-        self._name, self._dependencies = name, dependencies
+        self._source = source
+        self._tree = tree
+        self._name = name
+        self._dependencies = dependencies
         self._variables = {"PROJECT_NAME"}
         self._guesses = 0
-        self._commands: set[str] = set(known_commands())
+        self._commands = set(known_commands())
 
-    def found(self, commands: Iterable[Command]) -> Iterator[Slip]:
+    def found(self, commands: Iterable[Command]) -> Slips:
         """Yield the slips of commands, also of those in blocks."""
-        every_command = [*all_commands(commands)]
+        every_command = list(all_commands(commands))
         for command in every_command:
             if command.name in ("function", "macro", "set", "option") and command.arguments:
                 names = self._variables if command.name in ("set", "option") else self._commands
@@ -87,7 +90,7 @@ class _CMakeSlips:
         self._guesses += 1
         return near(name, known) if self._guesses <= MAX_GUESSES else None
 
-    def _of_command(self, command: Command) -> Iterator[Slip]:
+    def _of_command(self, command: Command) -> Slips:
         if command.name not in self._commands:
             meant = self._near(command.name, self._commands)
             if meant is None:
@@ -110,7 +113,7 @@ class _CMakeSlips:
         elif command.name == "install":
             yield from self._of_install(command)
 
-    def _of_project(self, argument: Argument) -> Iterator[Slip]:
+    def _of_project(self, argument: Argument) -> Slips:
         """Yield that project() has another name than package.xml."""
         if self._name and "$" not in argument.text and argument.text != self._name:
             reaction = (
@@ -119,14 +122,14 @@ class _CMakeSlips:
             )
             yield self._of_argument(argument, self._name, reaction)
 
-    def _of_package(self, argument: Argument) -> Iterator[Slip]:
+    def _of_package(self, argument: Argument) -> Slips:
         """Yield that find_package() names a misspelt package."""
         known = {*self._dependencies, "ament_cmake"}
         meant = near(argument.text, known) if argument.text not in known else None
         if meant is not None:
             yield self._of_argument(argument, meant, f"there is no package {quoted(argument.text)}")
 
-    def _of_install(self, command: Command) -> Iterator[Slip]:
+    def _of_install(self, command: Command) -> Slips:
         """Yield misspelt words of install(), and the paths that it lists."""
         first, *others = command.arguments
         if first.text not in _KINDS:
@@ -148,7 +151,7 @@ class _CMakeSlips:
             elif is_listed and "$" not in text:
                 yield from self._of_path(argument, is_folder=first.text == "DIRECTORY")
 
-    def _of_path(self, argument: Argument, *, is_folder: bool) -> Iterator[Slip]:
+    def _of_path(self, argument: Argument, *, is_folder: bool) -> Slips:
         path = argument.text.rstrip("/").removeprefix("./")
         known = self._tree.folders if is_folder else self._tree.files
         if not path or path in known:
@@ -161,13 +164,19 @@ class _CMakeSlips:
             new = argument.text.replace(path, meant)
             yield self._of_argument(argument, new, f"the package has no {argument.text}")
 
-    def _of_variables(self, argument: Argument) -> Iterator[Slip]:
+    def _of_variables(self, argument: Argument) -> Slips:
         for used in _VARIABLE.finditer(argument.text):
             name = used[1]
             meant = self._near(name, self._variables) if name not in self._variables else None
             if meant is not None:
                 new = argument.text.replace(used[0], f"${{{meant}}}")
                 reaction = f"no variable {name} is set, so that it is empty"
+                yield self._of_argument(argument, new, reaction, is_refused=False)
+        for written in _UNMARKED.finditer(argument.text):
+            name = written[1] or written[2]
+            if name in self._variables:
+                new = argument.text.replace(written[0], f"${{{name}}}")
+                reaction = f"{written[0]} is no variable"
                 yield self._of_argument(argument, new, reaction, is_refused=False)
 
     def _of_argument(

@@ -2,9 +2,11 @@
 
 import posixpath
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 
+from grader.base.grouping import distinct, texts_among
+from grader.base.records import Record
 from grader.ros.installation.cmake.cmake_values import ROOT, Text, joined
 from grader.ros.installation.file_search import PackageListing
 from grader.ros.installation.installation import CmakeComponent, CmakeTarget
@@ -18,8 +20,7 @@ _SHARED = "SHARED"
 _CPP = (".cpp", ".cc", ".cxx", ".c++", ".c")
 
 
-@dataclass
-class _Made:
+class _Made(Record, frozen=False):
     """A target, as far as the commands before have made it."""
 
     kind: str
@@ -50,7 +51,7 @@ class CmakeTargets:
     def add_sources(self, name: str, texts: Sequence[Text]) -> None:
         """Add sources to a target. One that is not known leaves open which there are."""
         made = self._made.get(name)
-        if made is None:
+        if not made:
             return
         for before, text in pairwise(("", *texts)):
             if isinstance(text, Unknown):
@@ -71,16 +72,16 @@ class CmakeTargets:
     def link(self, name: str, texts: Sequence[Text]) -> None:
         """Add what target_link_libraries() names."""
         made = self._made.get(name)
-        if made is not None:
-            known = [text for text in texts if isinstance(text, str)]
+        if made:
+            known = texts_among(texts)
             made.links += [text for text in known if text not in _SCOPES]
             made.is_certain = made.is_certain and len(known) == len(texts)
 
     def depend(self, name: str, packages: Sequence[Text]) -> None:
         """Add what ament_target_dependencies() names."""
         made = self._made.get(name)
-        if made is not None:
-            made.packages += [text for text in packages if isinstance(text, str)]
+        if made:
+            made.packages += texts_among(packages)
 
     def register(self, name: str, component: CmakeComponent) -> None:
         """Add a component that rclcpp_components registers for a library."""
@@ -100,7 +101,7 @@ class CmakeTargets:
     def file_name(self, name: str) -> Text:
         """Return the name of the file of an executable."""
         made = self._made.get(name)
-        properties = made.properties if made is not None else {}
+        properties = made.properties if made else {}
         parts = [properties.get("PREFIX", ""), properties.get("OUTPUT_NAME", name)]
         return joined([*parts, properties.get("SUFFIX", "")])
 
@@ -108,7 +109,8 @@ class CmakeTargets:
         """Return the targets; `inside` has the path in the package of each source."""
         targets = []
         for name, made in self._made.items():
-            paths, has_others = [], False
+            paths = []
+            has_others = False
             for source in made.sources:
                 path = inside.get(source)
                 if path is not None and path in self._listing.files:
@@ -119,8 +121,8 @@ class CmakeTargets:
                 CmakeTarget(
                     name=name,
                     kind=made.kind,
-                    sources=tuple(dict.fromkeys(paths)),
-                    links=tuple(dict.fromkeys(made.links)),
+                    sources=distinct(paths),
+                    links=distinct(made.links),
                     packages=tuple(made.packages),
                     components=tuple(made.components),
                     at=made.at,

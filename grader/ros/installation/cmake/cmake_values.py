@@ -4,6 +4,8 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 
+from grader.base.grouping import texts_among
+from grader.base.patterns import on_use
 from grader.ros.installation.cmake.language import Argument, Command
 from grader.ros.installation.places import PREFIX
 from grader.ros.known.cmake_words import cmake_words
@@ -20,11 +22,15 @@ _FOLDERS = {
     **dict.fromkeys(("CMAKE_BINARY_DIR", "CMAKE_CURRENT_BINARY_DIR", "PROJECT_BINARY_DIR"), _BUILD),
     "CMAKE_INSTALL_PREFIX": PREFIX,
 }
-_PIECES = re.compile(r"\\(.)|(\$\{)|(\})|\$(?:ENV|CACHE)\{[^}]*\}?|\$<|[^\\$}]+|.", re.DOTALL)
+_PIECES = on_use(r"\\(.)|(\$\{)|(\})|\$(?:ENV|CACHE)\{[^}]*\}?|\$<|[^\\$}]+|.", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", ";": "\\;"}
-_NAMES = re.compile(r"\$\{([^${}]*)\}")
-_SEPARATOR = re.compile(r"(?<!\\);")
+_NAMES = on_use(r"\$\{([^${}]*)\}")
+_SEPARATOR = on_use(r"(?<!\\);")
 _MAX_TEXT = 64 * 1024  # characters of a value
+
+# How the names of packages of interfaces end; what each of these exports besides others.
+OF_INTERFACES = ("_msgs", "_srvs", "_interfaces", "_actions")
+_WITH_INTERFACES = ("builtin_interfaces", "action_msgs", "service_msgs", "rosidl_default_runtime")
 
 
 class Values:
@@ -34,6 +40,7 @@ class Values:
         self.budget = budget
         self.variables: dict[str, Text] = {**cmake_words().variables, **_FOLDERS}
         self.packages: set[str] = set()  # that were found, in lower case
+        self.finds_interfaces = False  # whether some have interfaces, and bring what is not known
         # why it is not known whether the current command is run
         self.uncertain: Unknown | None = None
         self.is_opaque = False  # whether something that is not evaluated may have set any variable
@@ -48,7 +55,8 @@ class Values:
     def reached_packages(self) -> set[str] | None:
         """Return the packages that were found, with those that they export.
 
-        The result is None where it is not known which these are.
+        The result is None where it is not known which these are. A package of interfaces exports
+        others of interfaces and nothing else.
         """
         if self.is_opaque:
             return None
@@ -60,15 +68,10 @@ class Values:
     def _reach(self, packages: set[str]) -> set[str] | None:
         exports = cmake_words().exports
         self.budget.charge(len(packages))
-        if not packages.issubset(exports):
+        if any(name not in exports and not name.endswith(OF_INTERFACES) for name in packages):
             return None
-        pending, reached = [*packages], set[str]()
-        while pending:
-            package = pending.pop()
-            if package not in reached:
-                reached.add(package)
-                pending += exports.get(package, "").split()
-        return reached
+        brought = _WITH_INTERFACES if self.finds_interfaces else ()
+        return reachable_packages([*packages, *brought])
 
     def texts(self, arguments: Sequence[Argument]) -> list[Text]:
         """Return what arguments stand for; a list is several texts."""
@@ -77,7 +80,7 @@ class Values:
     def known(self, command: Command) -> list[str] | None:
         """Return what the arguments of a command stand for; None if one is not known."""
         texts = self.texts(command.arguments)
-        known = [text for text in texts if isinstance(text, str)]
+        known = texts_among(texts)
         if len(known) == len(texts):
             return known
         return None
@@ -86,6 +89,11 @@ class Values:
         """Return what the first argument of a command stands for; an empty text without any."""
         return next(iter(self.texts(command.arguments[:1])), "")
 
+    def first_and_rest(self, command: Command) -> tuple[Text, list[Text]]:
+        """Return what the arguments of a command stand for; the first is empty without any."""
+        first, *rest = self.texts(command.arguments) or [""]
+        return first, rest
+
     def expanded(self, argument: Argument) -> list[Text]:
         """Return what an argument stands for."""
         if argument.kind in ("bracket", "paren"):
@@ -93,7 +101,7 @@ class Values:
         text = self._value(argument.text, argument.at)
         if isinstance(text, Unknown) or argument.kind == "quoted":
             return [text]
-        return [*split_list(text)]
+        return list(split_list(text))
 
     def _value(self, text: str, at: Position) -> Text:
         """Return a text with the values of variables, whose names may be made of variables."""
@@ -185,8 +193,20 @@ class Values:
 
     def forget(self, names: Iterable[Text], reason: str, at: Position) -> None:
         """Set variables to a value that is not known."""
-        texts = [name for name in names if isinstance(name, str)]
+        texts = texts_among(names)
         self.assign_all(dict.fromkeys(texts, Unknown(reason, at)))
+
+
+def reachable_packages(packages: Iterable[str]) -> set[str]:
+    """Return packages with those that they export, directly or not."""
+    pending = list(packages)
+    reached = set()
+    while pending:
+        package = pending.pop()
+        if package not in reached:
+            reached.add(package)
+            pending += cmake_words().exports.get(package, "").split()
+    return reached
 
 
 def split_list(text: str) -> list[str]:
@@ -196,7 +216,7 @@ def split_list(text: str) -> list[str]:
 
 def joined(parts: Iterable[Text], between: str = "") -> Text:
     """Return one text; a part that is not known makes it unknown."""
-    known: list[str] = []
+    known = []
     for part in parts:
         if isinstance(part, Unknown):
             return part

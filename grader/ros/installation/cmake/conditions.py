@@ -1,17 +1,19 @@
 """The conditions of if() in a CMakeLists.txt, as cmake-commands(7) gives their order."""
 
 import operator
-import re
 from collections.abc import Callable, Sequence
 
+from grader.base.patterns import on_use
 from grader.ros.installation.cmake.cmake_values import Text, Values, split_list
 from grader.ros.python.parse import Position
 from grader.ros.python.values import Unknown
 
+_Truth = bool | None  # None where it is not known
+
 _TRUE = frozenset({"1", "ON", "YES", "TRUE", "Y"})
 _FALSE = frozenset({"0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND", ""})
 _MAX_DEPTH = 30  # parentheses and NOT in each other
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+_NUMBER = on_use(r"-?\d+(?:\.\d+)?")
 _COMPARE: dict[str, Callable[[float, float], bool]] = {
     "EQUAL": operator.eq,
     "LESS": operator.lt,
@@ -42,14 +44,17 @@ class Condition:
         self,
         tokens: Sequence[tuple[Text, bool]],
         values: Values,
-        exists: Callable[[str], bool | None],
+        exists: Callable[[str], _Truth],
         at: Position,
     ) -> None:
         """`exists` says whether there is a file or folder at a path."""
-        self._tokens, self._values, self._exists, self._at = tokens, values, exists, at
+        self._tokens = tokens
+        self._values = values
+        self._exists = exists
+        self._at = at
         self._index = 0
 
-    def holds(self) -> bool | None:
+    def holds(self) -> _Truth:
         """Return whether it holds; None if that is not known."""
         is_true = self._either(0)
         if self._index == len(self._tokens):
@@ -61,7 +66,7 @@ class Condition:
             return self._tokens[self._index][0]
         return None
 
-    def _either(self, depth: int) -> bool | None:
+    def _either(self, depth: int) -> _Truth:
         is_true = self._both(depth)
         while self._peek() == "OR":
             self._index += 1
@@ -74,7 +79,7 @@ class Condition:
                 is_true = False
         return is_true
 
-    def _both(self, depth: int) -> bool | None:
+    def _both(self, depth: int) -> _Truth:
         is_true = self._negated(depth)
         while self._peek() == "AND":
             self._index += 1
@@ -87,7 +92,7 @@ class Condition:
                 is_true = True
         return is_true
 
-    def _negated(self, depth: int) -> bool | None:
+    def _negated(self, depth: int) -> _Truth:
         if depth > _MAX_DEPTH:
             return None
         if self._peek() == "NOT":
@@ -102,7 +107,7 @@ class Condition:
             return is_true
         return self._leaf()
 
-    def _leaf(self) -> bool | None:
+    def _leaf(self) -> _Truth:
         first = self._next()
         if first is None:
             return None
@@ -135,7 +140,7 @@ class Condition:
             return self._values.variables[text]
         return text
 
-    def _truth(self, text: Text, is_plain: bool) -> bool | None:
+    def _truth(self, text: Text, is_plain: bool) -> _Truth:
         if isinstance(text, Unknown):
             return None
         constant = _constant(text)
@@ -146,7 +151,7 @@ class Condition:
             return None
         return not _is_false(value)
 
-    def _test(self, word: str, operand: Text) -> bool | None:
+    def _test(self, word: str, operand: Text) -> _Truth:
         if isinstance(operand, Unknown):
             return None
         if word in _FILE_TESTS:
@@ -160,7 +165,7 @@ class Condition:
             )  # one that is set to nothing may be defined
         return None
 
-    def _compare(self, left: Text, word: str, second: tuple[Text, bool]) -> bool | None:
+    def _compare(self, left: Text, word: str, second: tuple[Text, bool]) -> _Truth:
         right = second[0] if word in ("MATCHES", "IN_LIST") else self._operand(*second)
         if isinstance(left, Unknown) or isinstance(right, Unknown):
             return None
@@ -176,7 +181,7 @@ class Condition:
         return None
 
 
-def _constant(text: str) -> bool | None:
+def _constant(text: str) -> _Truth:
     """Return the truth of a constant; None for another text."""
     word = text.upper()
     if word in _TRUE or (_NUMBER.fullmatch(text) and float(text) != 0):

@@ -3,17 +3,20 @@
 import re
 from collections.abc import Iterable, Iterator
 from itertools import chain
-from typing import Literal, NamedTuple
+from typing import Literal
 
+from grader.base.patterns import on_use
+from grader.base.records import Named
 from grader.base.source import Source
 from grader.ros.python.parse import Position
 
 _MAX_DEPTH = 30  # blocks in each other
-_SKIP = re.compile(r"(?:\s++|#\[(=*)\[.*?\]\1\]|#(?!\[=*\[)[^\n]*+)++", re.DOTALL)
-_NAME = re.compile(r"([A-Za-z_]\w*+)[ \t]*+\(")
-_ARGUMENT = re.compile(
+_SKIP = on_use(r"(?:\s++|#\[(=*)\[.*?\]\1\]|#(?!\[=*\[)[^\n]*+)++", re.DOTALL)
+_NAME = on_use(r"([A-Za-z_]\w*+)[ \t]*+\(")
+_ARGUMENT = on_use(
     r'(?P<paren>[()])|(?P<bracket>\[(=*)\[\n?(.*?)\]\3\])|"(?P<quoted>(?:[^"\\]|\\.)*+)"'
-    r'|(?P<unquoted>(?:[^\s()#"\\]|\\.)(?:[^\s()#"\\]|\\.|"(?:[^"\\]|\\.)*+")*+)',
+    r'|(?P<unquoted>(?:\$\([A-Za-z0-9_]*+\)|[^\s()#"\\]|\\.)'
+    r'(?:\$\([A-Za-z0-9_]*+\)|[^\s()#"\\]|\\.|"(?:[^"\\]|\\.)*+")*+)',
     re.DOTALL,
 )
 _ENDS = {
@@ -35,10 +38,11 @@ class CMakeFault(Exception):
 
     def __init__(self, message: str, at: Position, *, is_certain: bool = True) -> None:
         super().__init__(message)
-        self.at, self.is_certain = at, is_certain
+        self.at = at
+        self.is_certain = is_certain
 
 
-class Argument(NamedTuple):
+class Argument(Named):
     """An argument as it is written, without its quotes or brackets."""
 
     text: str
@@ -46,7 +50,7 @@ class Argument(NamedTuple):
     at: Position
 
 
-class Command(NamedTuple):
+class Command(Named):
     """A command, with the commands in it if it begins a block.
 
     Of `if`, `elseif` and `else` are in `others`.
@@ -61,7 +65,7 @@ class Command(NamedTuple):
 
 def parse_cmake(source: Source) -> tuple[Command, ...]:
     """Return the commands of a file. Raises CMakeFault."""
-    commands = [*_commands(source)]
+    commands = list(_commands(source))
     parsed, rest = _block(commands, 0, "", 0)
     if rest < len(commands):
         raise CMakeFault(f"{commands[rest].name}() has no beginning", commands[rest].at)
@@ -72,7 +76,7 @@ def _block(
     commands: list[Command], index: int, end: str, depth: int
 ) -> tuple[tuple[Command, ...], int]:
     """Return the commands up to the end of a block, and the index of that end."""
-    block: list[Command] = []
+    block = []
     while index < len(commands):
         command = commands[index]
         if command.name == end or (end == "endif" and command.name in ("elseif", "else")):
@@ -91,11 +95,12 @@ def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, i
 
     Raises CMakeFault.
     """
-    first, end = commands[start], _ENDS[commands[start].name]
+    first = commands[start]
+    end = _ENDS[commands[start].name]
     if depth > _MAX_DEPTH:
         raise CMakeFault("the blocks are too deeply nested to read", first.at, is_certain=False)
     body, index = _block(commands, start + 1, end, depth + 1)
-    others: list[Command] = []
+    others = []
     while index < len(commands):
         command = commands[index]
         if end != "endif" or command.name not in ("elseif", "else"):
@@ -109,11 +114,12 @@ def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, i
 
 def _commands(source: Source) -> Iterator[Command]:
     """Yield the commands of a file, without blocks. Raises CMakeFault."""
-    text, places = source.text, _Columns(source)
+    text = source.text
+    places = _Columns(source)
     offset = len("\ufeff") if text.startswith("\ufeff") else 0  # CMake takes a byte order mark
     while (offset := _skip(text, offset)) < len(text):
         name = _NAME.match(text, offset)
-        if name is None:
+        if not name:
             word = re.match(r"\S{1,30}", text[offset:])
             raise CMakeFault(
                 f"CMake expects a command such as install(...), not {word and word[0]!r}",
@@ -127,12 +133,13 @@ def _commands(source: Source) -> Iterator[Command]:
 
 def _arguments(text: str, offset: int, places: "_Columns") -> tuple[tuple[Argument, ...], int]:
     """Return the arguments of a command and where it ends. Raises CMakeFault."""
-    start, depth = offset, 0
+    start = offset
+    depth = 0
     arguments: list[Argument] = []
     while True:
         offset = _skip(text, offset)
         match = _ARGUMENT.match(text, offset)
-        if match is None:
+        if not match:
             if text[offset : offset + 1] == '"':
                 reason = "a quote is not closed"
             else:
@@ -151,7 +158,7 @@ def _arguments(text: str, offset: int, places: "_Columns") -> tuple[tuple[Argume
 def _skip(text: str, offset: int) -> int:
     """Return where the next token begins, after space and comments."""
     match = _SKIP.match(text, offset)
-    return match.end() if match is not None else offset
+    return match.end() if match else offset
 
 
 class _Columns:
@@ -162,14 +169,18 @@ class _Columns:
 
     def __init__(self, source: Source) -> None:
         self._source = source
-        self._line, self._offset, self._column = 0, 0, 1
+        self._line = 0
+        self._offset = 0
+        self._column = 1
 
     def at(self, offset: int) -> Position:
         """Return the position of an offset."""
         at = self._source.at(offset)
         start = offset - at.column + 1
         if self._line != at.line or offset < self._offset:
-            self._line, self._offset, self._column = at.line, start, 1
+            self._line = at.line
+            self._offset = start
+            self._column = 1
         between = self._source.text[self._offset : offset]
         self._column += len(between.encode("utf-8", "surrogateescape"))
         self._offset = offset

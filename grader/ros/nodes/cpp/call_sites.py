@@ -3,14 +3,12 @@
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
+from grader.base.grouping import are_texts
 from grader.ros.cpp.cpp_evaluation import CppEvaluation
 from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue
-from grader.ros.cpp.declarations import CppFunction, name_in, plain
+from grader.ros.cpp.declarations import CppFunction, name_in, plain, short_name
 from grader.ros.cpp.objects import class_written
-from grader.ros.cpp.syntax import (
-    CppNode,
-    CppNodes,
-)
+from grader.ros.cpp.syntax import CppNode, CppNodes, CppNodesByName
 from grader.ros.cpp.unit import CppUnit, called_name, list_arguments
 from grader.ros.python.budget import Budget
 
@@ -23,7 +21,9 @@ class CallSites:
     """Where functions and constructors are called in files that are compiled together."""
 
     def __init__(self, unit: CppUnit, evaluation: CppEvaluation, budget: Budget) -> None:
-        self._unit, self._evaluation, self._budget = unit, evaluation, budget
+        self._unit = unit
+        self._evaluation = evaluation
+        self._budget = budget
 
     def alternatives(self, value: CppValue, depth: int = 0) -> Sequence[CppValue]:
         """Return a value for each place that calls the function whose parameters it has.
@@ -34,7 +34,7 @@ class CallSites:
         if len(functions) != 1 or depth > _MAX_DEPTH:
             return [value]
         [function] = functions
-        assert function is not None
+        assert function
         sites = self._find_sites(function)
         if not 0 < len(sites) <= _MAX_SITES:
             return [value]
@@ -50,8 +50,8 @@ class CallSites:
         """Return whether a value has a parameter of the constructor of one of some classes."""
         for name in _names_in(value):
             function = self._find_function(name)
-            owner = self._unit.find_owner(function) if function is not None else ""
-            is_constructor = function is not None and owner.rpartition("::")[2] == function.name
+            owner = function.class_name if function else ""
+            is_constructor = function is not None and short_name(owner) == function.name
             if is_constructor and owner in classes:
                 return True
         return False
@@ -59,20 +59,16 @@ class CallSites:
     def _find_function(self, name: CppName) -> CppFunction | None:
         """Return the function that has a parameter; None for another name."""
         function = self._unit.function_around(name.node)
-        if function is None:
+        if not function:
             return None
         is_parameter = any(node is name.node for node in self._parameters(function))
         return function if is_parameter else None
 
-    def _parameters(self, function: CppFunction) -> list[CppNode | None]:
+    def _parameters(self, function: CppFunction) -> CppNodes:
         """Return the names of the parameters of a function."""
-        names: list[CppNode | None] = []
-        for parameter in function.parameters:
-            declarator = parameter.child("declarator")
-            names.append(name_in(declarator) if declarator is not None else None)
-        return names
+        return [name_in(parameter.child("declarator")) for parameter in function.parameters]
 
-    def _find_sites(self, function: CppFunction) -> Sequence[CppNode]:
+    def _find_sites(self, function: CppFunction) -> CppNodes:
         """Return where a function is called, if no other one has its name and its parameters."""
         count = len(function.parameters)
         same = self._unit.functions_by_name[function.name]
@@ -80,15 +76,15 @@ class CallSites:
         if any(each is not function and len(each.parameters) == count for each in same):
             return []
         sites = self._sites.get(function.name, ())
-        needed = len([each for each in function.parameters if each.child("default_value") is None])
+        needed = len([each for each in function.parameters if not each.child("default_value")])
         return [site for site in sites if needed <= len(_arguments(site)) <= count]
 
     def _given_at(self, function: CppFunction, site: CppNode) -> "dict[CppNode, CppValue] | None":
         """Return the values of the parameters of a function at a place that calls it."""
         arguments = _arguments(site)
-        given: dict[CppNode, CppValue] = {}
+        given = {}
         for position, name in enumerate(self._parameters(function)):
-            if name is None:
+            if not name:
                 return None
             default = function.parameters[position].child("default_value")
             argument = arguments[position] if position < len(arguments) else default
@@ -96,9 +92,9 @@ class CallSites:
         return given
 
     @cached_property
-    def _sites(self) -> Mapping[str, Sequence[CppNode]]:
+    def _sites(self) -> Mapping[str, CppNodes]:
         """The calls by the last names of what they call: a function, or the class of an object."""
-        sites: dict[str, CppNodes] = {}
+        sites: CppNodesByName = {}
         for file in self._unit.files:
             self._budget.charge(1 + len(file.calls))
             for node in file.calls:
@@ -106,17 +102,16 @@ class CallSites:
                 if not name and node.kind == "call_expression":
                     name = called_name(node)
                 if name and node.kind != "init_declarator":
-                    sites.setdefault(plain(name).rpartition("::")[2], []).append(node)
+                    sites.setdefault(short_name(plain(name)), []).append(node)
             for node in file.of_kind("field_initializer"):
                 name = self._class_initialized(node)
-                sites.setdefault(plain(name).rpartition("::")[2], []).append(node)
+                sites.setdefault(short_name(plain(name)), []).append(node)
         return sites
 
     def _class_initialized(self, initializer: CppNode) -> str:
         """Return the base class, or the type of the member, that an initializer makes."""
-        name = initializer.children[0].text if initializer.children else ""
-        function = self._unit.function_around(initializer)
-        scopes = self._unit.list_scopes(function) if function is not None else ()
+        name = initializer.first.text
+        scopes = self._unit.scopes_at(initializer)
         variables = self._unit.variables_named(name, scopes)
         return variables[0].type if variables else name
 
@@ -126,7 +121,7 @@ def _arguments(site: CppNode) -> CppNodes:
         return list_arguments(site)
     for node in site.walk():
         if node.kind in _LISTS:
-            return [child for child in node.children if child.kind != "comment"]
+            return node.code
     return []
 
 
@@ -155,6 +150,6 @@ def _replaced(value: CppValue, given: Mapping[CppNode, CppValue]) -> CppValue:
             return CppCall(value.name, arguments, value.node, value.types, owner)
         case CppSum():
             parts = [_replaced(part, given) for part in value.parts]
-            is_text = all(isinstance(part, str) for part in parts)
+            is_text = are_texts(parts)
             return "".join(parts) if is_text else CppSum(parts)
     return value

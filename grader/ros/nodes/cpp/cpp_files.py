@@ -1,11 +1,12 @@
 """The C++ files of a package, and which of them a build compiles into one program or library."""
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
 from grader.base.source import Location
 from grader.ros.cpp.declarations import CppFile
 from grader.ros.cpp.literals import TEXTS, text_of_literal
@@ -18,7 +19,7 @@ _SOURCES = (".cpp", ".cc", ".cxx", ".c++")
 _HEADERS = (".hpp", ".hh", ".hxx", ".h", ".h++", ".ipp", ".tpp")
 # What a statement that is no C++, or a macro, must not have: what makes, declares or opens
 # something, or is given a node, or sets what a name may be made of.
-_LOST = re.compile(
+_LOST = on_use(
     r"\b(?:create_\w+|declare_parameters?|get_parameter\w*|has_parameter|Subscriber|add_node|spin"
     r"|class|struct|namespace|template|using|main|make_(?:shared|unique)|\w+_from_this"
     r"|new(?!\s+(?:bool|char|double|float|int)\b)|Node|LifecycleNode|RCLCPP_COMPONENTS\w*)\b"
@@ -53,7 +54,7 @@ class CppFiles:
 
     @cached_property
     def _paths(self) -> Mapping[str, object]:
-        endings = (*_SOURCES, *_HEADERS)
+        endings = _SOURCES + _HEADERS
         unread = self._package.inner
         paths = [path for path in self._package.tree.files if path.endswith(endings)]
         return dict.fromkeys(path for path in paths if not path.startswith((*unread, "test/")))
@@ -61,32 +62,33 @@ class CppFiles:
     @cached_property
     def _targets(self) -> Mapping[str, CmakeTarget]:
         setup = self._package.installation
-        return {target.name: target for target in (setup.targets if setup is not None else ())}
+        return {target.name: target for target in (setup.targets if setup else ())}
 
     @cached_property
     def compiled(self) -> tuple[CompiledTarget, ...]:
         """The targets that have sources in C++, without those of tests."""
         setup = self._package.installation
-        units: dict[tuple[str, ...], CppUnit] = {}
+        units: dict[Strings, CppUnit] = {}
         compiled = []
         for target in self._targets.values():
-            paths = [*self._compiled_into(target)]
+            paths = list(self._compiled_into(target))
             if not any(path.endswith(_SOURCES) for path in paths):
                 continue
             files, unread = self._read_all(paths)
             key = tuple(file.syntax.source.path for file in files)
             unit = units.setdefault(key, CppUnit(files))
-            assert setup is not None
+            assert setup
             compiled.append(CompiledTarget(target, setup.location(target.at), unit, unread))
         return tuple(compiled)
 
     def _compiled_into(self, target: CmakeTarget) -> Iterator[str]:
         """Yield the sources of a target, and of the own libraries that it links."""
-        pending, seen = [target.name], set[str]()
+        pending = [target.name]
+        seen = set[str]()
         while pending and len(seen) < _MAX_LINKED:
             name = pending.pop(0)
             made = self._targets.get(name)
-            if name in seen or made is None:
+            if name in seen or not made:
                 continue
             seen.add(name)
             pending += made.links
@@ -94,9 +96,10 @@ class CppFiles:
 
     def _read_all(self, paths: Sequence[str]) -> tuple[list[CppFile], tuple[_UnreadCpp, ...]]:
         """Return files with the headers of the package that they include."""
-        files: list[CppFile] = []
-        unread: list[_UnreadCpp] = []
-        pending, seen = [*paths], set[str]()
+        files = []
+        unread = []
+        pending = list(paths)
+        seen = set()
         while pending:
             path = pending.pop(0)
             if path in seen:
@@ -109,7 +112,7 @@ class CppFiles:
             files.append(file)
             self._package.work.charge(1 + len(file.includes))
             error = _lost_in(file)
-            if error is not None:
+            if error:
                 unread.append(_UnreadCpp("this is no C++ that is known", error))
             for included in file.includes:
                 header = resolve_include(path, included, self._paths)

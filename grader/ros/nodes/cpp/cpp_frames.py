@@ -1,21 +1,21 @@
 """The frames that functions of a C++ node publish, look up or stamp messages with."""
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import chain
 
+from grader.base.grouping import only_one
+from grader.base.patterns import on_use
 from grader.base.transforms import Transform
 from grader.ros.cpp.cpp_evaluation import CppEvaluation
-from grader.ros.cpp.declarations import CppFunction, find_declaration
-from grader.ros.cpp.syntax import (
-    CppNode,
-    CppNodes,
-)
+from grader.ros.cpp.declarations import CppFunction, find_declaration, short_name
+from grader.ros.cpp.syntax import NO_NODE, CppNode, CppNodes, CppNodesByName
 from grader.ros.cpp.unit import CppUnit, called_name, list_arguments
 from grader.ros.nodes.cpp.rclcpp_calls import read_name
 from grader.ros.nodes.node_facts import FrameUse, NodeFrame, NodeTransform
 from grader.ros.nodes.transform_poses import pose_set
+
+_Settings = Mapping[str, Sequence[CppNode]]  # what is set to each field
 
 _LOOKING_UP = ("lookupTransform", "canTransform", "waitForTransform")
 _FULL_FORM = 5  # arguments of lookupTransform() with two times and a fixed frame
@@ -27,8 +27,8 @@ _FIELDS: Mapping[FrameUse, str] = {
 }
 _STATIC = "StaticTransformBroadcaster"
 _SET = ("frame_id", "child_frame_id")
-_OF_POSE = re.compile(r"(?:\.|->)transform\b")
-_NUMBER_OF_POSE = re.compile(r"(?:\.|->)[xyzw]\Z")
+_OF_POSE = on_use(r"(?:\.|->)transform\b")
+_NUMBER_OF_POSE = on_use(r"(?:\.|->)[xyzw]\Z")
 _MOVED = ("x", "y", "z", "w", "translation", "rotation", "transform")  # fields of a transform
 
 
@@ -36,10 +36,11 @@ class _Variables:
     """The variables of a function: the type of each, and what its fields are set to."""
 
     def __init__(self, function: CppFunction, unit: CppUnit) -> None:
-        self.function, self._unit = function, unit
+        self.function = function
+        self._unit = unit
         self._types: dict[str, str] = {}
         self._local: dict[str, bool] = {}
-        self._numbers: dict[str, Mapping[str, Sequence[CppNode]] | None] = {}
+        self._numbers: dict[str, _Settings | None] = {}
 
     def find_type(self, name: CppNode) -> str:
         """Return the type of a local variable or a member, as it is written.
@@ -59,27 +60,27 @@ class _Variables:
         self._local[name.text] = False
         for use in self.find_uses(name.text):
             declaration = find_declaration(use)
-            if declaration is not None:
+            if declaration:
                 self._local[name.text] = True
-                kind = declaration.child("type")
-                return kind.text if kind is not None else ""
-        scopes = self._unit.list_scopes(self.function)
+                return declaration.child("type").text
+        scopes = self.function.inner_scopes
         members = self._unit.variables_named(name.text, scopes)
         return members[0].type if len(members) == 1 else ""
 
     def find_uses(self, name: str) -> Iterator[CppNode]:
         """Yield where a name is written in the function."""
-        start, end = self.function.node.start, self.function.node.end
+        start = self.function.node.start
+        end = self.function.node.end
         for use in self._unit.uses.get(name, ()):
             if use.file is self.function.node.file and start <= use.start < end:
                 yield use
 
     @cached_property
-    def fields(self) -> Mapping[str, Sequence[CppNode]]:
+    def fields(self) -> _Settings:
         """What fields are set to in the function, by their whole text."""
         return _values_by_field(chain.from_iterable(map(self.find_uses, _SET)))
 
-    def numbers(self, name: str) -> Mapping[str, Sequence[CppNode]] | None:
+    def numbers(self, name: str) -> _Settings | None:
         """Return what is set of the transform in a local variable, by its field.
 
         The result is None where more may be set.
@@ -90,34 +91,37 @@ class _Variables:
         return self._numbers[name]
 
     @cached_property
-    def _moved(self) -> Mapping[str, Mapping[str, Sequence[CppNode]]]:
+    def _moved(self) -> Mapping[str, _Settings]:
         """What fields of poses are set to in the function, by the variable and the field."""
         values = _values_by_field(chain.from_iterable(map(self.find_uses, _MOVED)))
-        moved: dict[str, dict[str, Sequence[CppNode]]] = {}
+        moved: dict[str, CppNodesByName] = {}
         for field, nodes in values.items():
             name, _, rest = field.partition(".")
             moved.setdefault(name, {})[rest] = nodes
         return moved
 
     @cached_property
-    def fields_of_file(self) -> Mapping[str, Sequence[CppNode]]:
+    def fields_of_file(self) -> _Settings:
         """What fields are set to in the file, by their whole text."""
         uses = chain.from_iterable(self._unit.uses.get(name, ()) for name in _SET)
         return _values_by_field(use for use in uses if use.file is self.function.node.file)
 
 
-def _values_by_field(uses: Iterable[CppNode]) -> dict[str, CppNodes]:
+def _values_by_field(uses: Iterable[CppNode]) -> CppNodesByName:
     """Return what is assigned to members, by the whole text of each."""
-    values: dict[str, CppNodes] = {}
+    values: CppNodesByName = {}
     for use in uses:
-        member = use.parent
-        setting = member.parent if member is not None else None
-        if member is None or setting is None or member.field != "left":
-            continue
-        value = setting.child("right") if setting.kind == "assignment_expression" else None
-        if value is not None:
-            values.setdefault(member.text, []).append(value)
+        value = _value_assigned(use.parent)
+        if value:
+            values.setdefault(use.parent.text, []).append(value)
     return values
+
+
+def _value_assigned(member: CppNode) -> CppNode:
+    """Return what a member is set to; NO_NODE where it is not set."""
+    setting = member.parent
+    is_set = setting.kind == "assignment_expression" and member.field == "left"
+    return setting.child("right") if is_set else NO_NODE
 
 
 def frames_in(
@@ -137,19 +141,19 @@ def transforms_in(
     """Yield the transforms that a function sends by a broadcaster; frames may be unknown."""
     variables = _Variables(function, unit)
     for call in unit.calls_in(function):
-        if call.kind != "call_expression" or called_name(call).rpartition("::")[2] != _SENDS:
+        if call.kind != "call_expression" or short_name(called_name(call)) != _SENDS:
             continue
         given = list_arguments(call)
         is_name = len(given) == 1 and given[0].kind == "identifier"
-        frames: list[NodeFrame] = []
+        frames = []
         for kind, field in _FIELDS.items():
-            value = _value_set(given[0], field, variables) if is_name else None
-            if value is not None:
+            value = _value_set(given[0], field, variables) if is_name else NO_NODE
+            if value:
                 frames.append(_frame(kind, value, evaluation))
             else:
                 frames.append(NodeFrame(kind, None, call.location))
-        broadcaster = next((each for each in call.walk() if each.kind == "identifier"), None)
-        kind_of_sender = variables.find_type(broadcaster) if broadcaster is not None else ""
+        broadcaster = next((each for each in call.walk() if each.kind == "identifier"), NO_NODE)
+        kind_of_sender = variables.find_type(broadcaster)
         yield NodeTransform(
             frames[0],
             frames[1],
@@ -167,30 +171,32 @@ def _pose_sent(name: CppNode, variables: _Variables, evaluation: CppEvaluation) 
         return None
 
     def value_set(field: str) -> CppNode | None:
-        return values[field][0] if len(values[field]) == 1 else None
+        return only_one(values[field])
 
     return pose_set(values.keys(), value_set, evaluation.evaluate_node)
 
 
 def _is_given_away(use: CppNode) -> bool:
     """Return whether something may change a transform, or its pose, without an assignment."""
-    part, parent = use, use.parent
-    while parent is not None and parent.kind == "field_expression" and part.field == "argument":
-        part, parent = parent, parent.parent
-    if parent is None or parent.kind == "declaration":
+    part = use
+    parent = use.parent
+    while parent.kind == "field_expression" and part.field == "argument":
+        part = parent
+        parent = parent.parent
+    if parent.kind == "declaration":
         return False
     if part is not use:
         is_set = part.field == "left" and parent.kind == "assignment_expression"
         is_of_pose = _OF_POSE.search(part.text) is not None
-        return is_of_pose and not is_set and _NUMBER_OF_POSE.search(part.text) is None
+        return is_of_pose and not is_set and not _NUMBER_OF_POSE.search(part.text)
     if parent.kind == "init_declarator":
         return use.field == "value"
-    if parent.kind == "argument_list" and parent.parent is not None:
-        return called_name(parent.parent).rpartition("::")[2] != _SENDS
+    if parent.kind == "argument_list":
+        return short_name(called_name(parent.parent)) != _SENDS
     return True
 
 
-def _value_set(name: CppNode, field: str, variables: _Variables) -> CppNode | None:
+def _value_set(name: CppNode, field: str, variables: _Variables) -> CppNode:
     """Return what a field of a transform is set to, once in the function.
 
     That of a member may be set once in another function of the file.
@@ -198,7 +204,7 @@ def _value_set(name: CppNode, field: str, variables: _Variables) -> CppNode | No
     values = variables.fields.get(f"{name.text}.{field}", ())
     if not values and not variables.is_local(name):
         values = variables.fields_of_file.get(f"{name.text}.{field}", ())
-    return values[0] if len(values) == 1 else None
+    return values[0] if len(values) == 1 else NO_NODE
 
 
 def _is_decided_by_parameter(
@@ -208,8 +214,8 @@ def _is_decided_by_parameter(
     for around in call.ancestors():
         if around.start < function.node.start:
             return False
-        condition = around.child("condition") if around.kind == "if_statement" else None
-        for tested in condition.walk() if condition is not None else ():
+        condition = around.child("condition") if around.kind == "if_statement" else NO_NODE
+        for tested in condition.walk():
             if tested.kind == "identifier":
                 _, parts = read_name(evaluation.evaluate_node(tested))
                 if any(part.kind == "parameter" for part in parts):
@@ -222,7 +228,7 @@ def _frames_in_calls(
 ) -> Iterator[NodeFrame]:
     """Yield the frames between which a function looks up transforms, and unknown published ones."""
     for call in unit.calls_in(variables.function):
-        short = called_name(call).rpartition("::")[2] if call.kind == "call_expression" else ""
+        short = short_name(called_name(call)) if call.kind == "call_expression" else ""
         given = list_arguments(call) if short else []
         if short in _LOOKING_UP and len(given) > 1:
             second = given[2] if len(given) >= _FULL_FORM else given[1]
@@ -236,19 +242,15 @@ def _set_frame(
     use: CppNode, variables: _Variables, evaluation: CppEvaluation
 ) -> Iterator[NodeFrame]:
     """Yield the frame that a member frame_id or child_frame_id is set to."""
-    member = use.parent
-    setting = member.parent if member is not None else None
-    if member is None or setting is None or setting.kind != "assignment_expression":
-        return
-    value = setting.child("right")
-    if member.field == "left" and value is not None:
-        yield _frame(_kind_of_use(use, member, variables), value, evaluation)
+    value = _value_assigned(use.parent)
+    if value:
+        yield _frame(_kind_of_use(use, variables), value, evaluation)
 
 
-def _kind_of_use(use: CppNode, member: CppNode, variables: _Variables) -> FrameUse:
+def _kind_of_use(use: CppNode, variables: _Variables) -> FrameUse:
     """Return what a frame is to the message in which it is set."""
-    root = next((inner for inner in member.walk() if inner.kind == "identifier"), None)
-    if root is None or not variables.find_type(root).endswith(_TRANSFORM):
+    root = next((inner for inner in use.parent.walk() if inner.kind == "identifier"), NO_NODE)
+    if not variables.find_type(root).endswith(_TRANSFORM):
         return "names"
     return "publishes" if use.text == "child_frame_id" else "is above"
 

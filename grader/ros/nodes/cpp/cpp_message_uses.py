@@ -3,10 +3,11 @@
 The type is certain of parameters and local variables that are declared once with it.
 """
 
-import re
 from collections import Counter
 from collections.abc import Iterator
 
+from grader.base.grouping import Strings
+from grader.base.patterns import on_use
 from grader.ros.cpp.declarations import (
     CONDITIONS,
     CppFunction,
@@ -14,13 +15,14 @@ from grader.ros.cpp.declarations import (
     name_in,
     plain,
     plain_name,
+    short_name,
 )
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import CppUnit, called_name, template_arguments
 from grader.ros.nodes.message_uses import ITEM
 from grader.ros.nodes.node_facts import FieldUse
 
-_TYPE = re.compile(
+_TYPE = on_use(
     r"(?P<package>\w+)::(?P<kind>msg|srv|action)::(?P<name>[A-Z]\w*)"
     r"(?:::(?P<section>Request|Response|Goal|Result|Feedback))?"
     r"(?P<pointer>::(?:Const)?(?:Shared|Unique)Ptr)?"
@@ -28,7 +30,7 @@ _TYPE = re.compile(
 _POINTERS = ("shared_ptr", "unique_ptr", "make_shared", "make_unique")
 _DECLARING = ("parameter_declaration", "optional_parameter_declaration", "declaration")
 _LOOPS = ("for_range_loop",)  # whose variable is declared by the loop itself
-_MAX_PATH = 10
+_MAX_PATH = 9
 
 
 def cpp_field_uses(function: CppFunction, unit: CppUnit) -> Iterator[FieldUse]:
@@ -39,24 +41,19 @@ def cpp_field_uses(function: CppFunction, unit: CppUnit) -> Iterator[FieldUse]:
     if not types:
         return
     for node in _unconditional(function.node):
-        if node.kind != "field_expression" or _is_method(node):
+        # What is called is a method, of a list or a pointer.
+        is_called = node.parent.kind == "call_expression" and node.field == "function"
+        if node.kind != "field_expression" or is_called:
             continue
         root, path = _split_members(node)
-        field = node.child("field")
-        if root is not None and field is not None and path and root.text in types:
-            yield FieldUse(types[root.text], path, field.location)
-
-
-def _is_method(member: CppNode) -> bool:
-    """Return whether a member is called: it is a method, of a list or a pointer."""
-    around = member.parent
-    is_called = around is not None and around.kind == "call_expression"
-    return is_called and member.field == "function"
+        if root in types:
+            yield FieldUse(types[root], path, node.child("field").location)
 
 
 def _unconditional(function: CppNode) -> Iterator[CppNode]:
     """Yield the nodes in a function that the preprocessor never leaves out."""
-    nodes, index = function.file.nodes, function.index
+    nodes = function.file.nodes
+    index = function.index
     while index < function.behind:
         node = nodes[index]
         if node.kind in CONDITIONS:
@@ -72,14 +69,11 @@ def _types_in(function: CppFunction, unit: CppUnit) -> dict[str, str]:
     They are names of classes in Python: geometry_msgs.msg.Twist.
     """
     declared = Counter[str]()
-    types: dict[str, str] = {}
-    scopes = unit.list_scopes(function)
+    types = {}
+    scopes = function.inner_scopes
     for node in function.node.walk():
         if node.kind in _LOOPS:
-            declarator = node.child("declarator")
-            name = name_in(declarator) if declarator is not None else None
-            if name is not None:
-                declared[name.text] += 1
+            declared[name_in(node.child("declarator")).text] += 1
         if node.kind not in _DECLARING:
             continue
         for name, value in declared_in(node):
@@ -90,65 +84,55 @@ def _types_in(function: CppFunction, unit: CppUnit) -> dict[str, str]:
     return {name: type_name for name, type_name in types.items() if declared[name] == 1}
 
 
-def _read_type(
-    declaration: CppNode, value: CppNode | None, unit: CppUnit, scopes: tuple[str, ...]
-) -> str | None:
+def _read_type(declaration: CppNode, value: CppNode, unit: CppUnit, scopes: Strings) -> str | None:
     """Return the type that a declaration gives its variables; None for any other type."""
     kind = declaration.child("type")
-    if kind is None:
-        return None
     written = kind.text
     if kind.kind == "placeholder_type_specifier":
         written = _type_made(value)
     name = plain(written)
-    if name.rpartition("::")[2] in _POINTERS:
+    if short_name(name) in _POINTERS:
         arguments = written.partition("<")[2].rpartition(">")[0]
         name = plain(arguments.strip().removeprefix("const ").removesuffix(" const"))
     match = _TYPE.fullmatch(unit.meanings(name, scopes)[0])
-    if match is None:
+    if not match:
         return None
     section = f".{match['section']}" if match["section"] else ""
     return f"{match['package']}.{match['kind']}.{match['name']}{section}"
 
 
-def _type_made(value: CppNode | None) -> str:
+def _type_made(value: CppNode) -> str:
     """Return the type of the object that a value makes: `Twist()`, `make_shared<Twist>()`."""
-    if value is None:
-        return ""
     if value.kind == "compound_literal_expression":
-        kind = value.child("type")
-        return kind.text if kind is not None else ""
+        return value.child("type").text
     if value.kind != "call_expression":
         return ""
     types = template_arguments(value)
     name = called_name(value)
-    if name.rpartition("::")[2] in _POINTERS:
+    if short_name(name) in _POINTERS:
         return types[0] if types else ""
     function = value.child("function")
-    is_name = function is not None and function.kind != "field_expression"
-    return plain_name(function) if is_name and function is not None and not types else ""
+    is_name = function.kind != "field_expression" and not types
+    return plain_name(function) if is_name else ""
 
 
-def _split_members(node: CppNode) -> tuple[CppNode | None, tuple[str, ...]]:
+def _split_members(node: CppNode) -> tuple[str, Strings]:
     """Return the variable that a chain of members begins with, and the names of the fields.
 
-    There is no variable where something else is in between.
+    The variable is empty where something else is in between.
     """
     path: list[str] = []
-    inner: CppNode | None = node
-    while inner is not None and len(path) < _MAX_PATH:
-        if inner.kind == "identifier":
-            return inner, tuple(reversed(path))
-        if inner.kind == "field_expression":
-            owner, field = inner.child("argument"), inner.child("field")
-            if owner is None or field is None or field.kind != "field_identifier":
-                return None, ()
-            if b"*" in inner.file.data[owner.end : field.start]:
-                return None, ()  # a pointer to a member
-            path.append(field.text)
-        elif inner.kind == "subscript_expression":
+    inner = node
+    while inner.kind != "identifier" and len(path) < _MAX_PATH:
+        owner = inner.child("argument")
+        field = inner.child("field")
+        if inner.kind == "subscript_expression":
             path.append(ITEM)
+        elif field.kind != "field_identifier" or inner.kind != "field_expression":
+            return "", ()
+        elif b"*" in inner.file.data[owner.end : field.start]:
+            return "", ()  # a pointer to a member
         else:
-            return None, ()
-        inner = inner.child("argument")
-    return None, ()
+            path.append(field.text)
+        inner = owner
+    return inner.text if inner.kind == "identifier" else "", tuple(reversed(path))

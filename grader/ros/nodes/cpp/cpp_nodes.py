@@ -6,12 +6,13 @@ Only what is written as a text, number or constant is known. What is opened unde
 listed as well. Macros, templates and code behind `#if` leave open what a node does.
 """
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
+from grader.base.grouping import as_text, only_one
 from grader.base.names import closest
+from grader.base.patterns import on_use
 from grader.base.source import Location
 from grader.ros.cpp.cpp_evaluation import CppEvaluation, LibraryCalls
 from grader.ros.cpp.cpp_values import CppCall, CppName, CppValue
@@ -21,6 +22,7 @@ from grader.ros.cpp.declarations import (
     declared_in,
     name_in,
     plain,
+    short_name,
 )
 from grader.ros.cpp.objects import class_written, find_object, find_taker, find_variable
 from grader.ros.cpp.syntax import (
@@ -29,6 +31,7 @@ from grader.ros.cpp.syntax import (
 )
 from grader.ros.cpp.unit import (
     called_name,
+    called_object,
     is_conditional,
     list_arguments,
 )
@@ -56,27 +59,31 @@ from grader.ros.nodes.node_facts import (
     CodeFault,
     CodeFaults,
     Doubt,
+    EncodingsByLocation,
     Endpoint,
     FieldUse,
-    ImageEncoding,
+    NodeFact,
     NodeFacts,
     NodeFrame,
     NodeParameter,
     NodeProgram,
-    NodeTransform,
     PackageNodes,
     SynchronisedType,
-    Timer,
+    make_node,
+    updater_facts,
 )
 from grader.ros.package.package import Package
 from grader.ros.python.budget import Budget, OutOfBudget
 
 _SETTING = {"get_parameter": 1, "get_parameter_or": 1}
-_REGISTERED = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(\s*([\w:]+)\s*\)")
+_REGISTERED = on_use(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(\s*([\w:]+)\s*\)")
 _SUBSCRIBER = "message_filters::Subscriber"
-_FILTER = re.compile(r"(?P<class>(?<![\w:])[\w:]*\bSubscriber)\s*+<\s*+(?P<type>[\w:]++)\s*+[,>]")
-_CALLED_MACRO = re.compile(r"\b[A-Z][A-Z0-9_]{3,}\b(?=\s*\(|\Z)")
-_MESSAGE_PART = re.compile(r"::(msg|srv|action)::")
+_UPDATER = "diagnostic_updater::Updater"
+_OF_OWNER = ("subscribe", "add")  # methods of these
+_POINTER = on_use(r"^std::(?:unique|shared)_ptr<|>$")
+_FILTER = on_use(r"(?P<class>(?<![\w:])[\w:]*\bSubscriber)\s*+<\s*+(?P<type>[\w:]++)\s*+[,>]")
+_CALLED_MACRO = on_use(r"\b[A-Z][A-Z0-9_]{3,}\b(?=\s*\(|\Z)")
+_MESSAGE_PART = on_use(r"::(msg|srv|action)::")
 _LISTS = ("argument_list", "initializer_list")
 _OF_NODE = 20  # parts of a class that may be that of a node
 _INTERFACE = "get_node_base_interface"
@@ -102,7 +109,6 @@ class _Parameter(NamedTuple):
 
 
 _Name = str | _Parameter | None
-_Fact = Endpoint | NodeParameter | Timer | Doubt | NodeFrame | NodeTransform
 
 
 def read_cpp_nodes(package: Package) -> PackageNodes:
@@ -114,7 +120,8 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
     loose_frames: dict[NodeFrame, None] = {}
     field_uses: dict[FieldUse, None] = {}
     synchronised: dict[SynchronisedType, None] = {}
-    is_loose, files = False, CppFiles(package)
+    is_loose = False
+    files = CppFiles(package)
     try:
         for compiled in files.compiled:
             target = _Target(compiled, package.work)
@@ -150,7 +157,9 @@ class _Target:
     """The nodes in the files that are compiled into one target."""
 
     def __init__(self, compiled: CompiledTarget, budget: Budget) -> None:
-        self._compiled, self._unit, self._budget = compiled, compiled.unit, budget
+        self._compiled = compiled
+        self._unit = compiled.unit
+        self._budget = budget
         interface = LibraryCalls(cpp_table().reading, _SETTING)
         self._evaluation = CppEvaluation(self._unit, interface, budget)
         self._sites = CallSites(self._unit, self._evaluation, budget)
@@ -165,8 +174,8 @@ class _Target:
             )
         if not compiled.target.is_certain:
             self.doubts.append(Doubt("its sources are not known", self._start))
-        self._facts: dict[NodeKey, list[_Fact]] = {name: [] for name in self._node_classes}
-        self._created = [*self._find_created()]
+        self._facts: dict[NodeKey, list[NodeFact]] = {name: [] for name in self._node_classes}
+        self._created = list(self._find_created())
         self._created_at = {created.node: created for created in self._created}
         self._nodes: dict[NodeKey, NodeFacts] = {}
         # What is given a node, and the calls of methods of what holds one.
@@ -183,7 +192,7 @@ class _Target:
         for created in self._created:
             self._give_object(created)
         self._follow_holders()
-        self._strangers = [*self._find_strangers()]
+        self._strangers = list(self._find_strangers())
         self._add_doubts()
 
     @property
@@ -198,7 +207,7 @@ class _Target:
     def _node_classes(self) -> Mapping[str, CppClass]:
         """The classes of nodes by their full names: those that are derived from one of rclcpp's."""
         kinds = set(cpp_table().nodes)
-        node_classes: dict[str, CppClass] = {}
+        node_classes = {}
         is_growing = True
         while is_growing:
             is_growing = False
@@ -216,7 +225,8 @@ class _Target:
 
     def _doubts_of_class(self, each: CppClass) -> Iterator[Doubt]:
         """Yield why a class may declare or open more than its own methods do."""
-        at, scopes = each.node.location, each.name.split("::")[:-1]
+        at = each.node.location
+        scopes = each.name.split("::")[:-1]
         harmless = {*cpp_table().nodes, *cpp_table().other_bases, *self._node_classes}
         for base in each.bases:
             if harmless.isdisjoint(self._unit.meanings(base, scopes)):
@@ -226,7 +236,7 @@ class _Target:
 
     def _add_doubts(self) -> None:
         """Add what leaves open what each node does."""
-        common = [*self.doubts]
+        common = list(self.doubts)
         for word in sorted(cpp_table().options):
             for use in self._unit.uses.get(word, ())[:1]:
                 common.append(Doubt(f"{word} of its NodeOptions", use.location))
@@ -250,7 +260,7 @@ class _Target:
     def _class_made_by(self, node: CppNode) -> str | None:
         """Return the class of nodes of which something makes an object; None for something else."""
         written = class_written(node)
-        if written and self._unit.function_around(node) is not None:
+        if written and self._unit.function_around(node):
             return self._class_named(written, node)
         return None
 
@@ -258,13 +268,12 @@ class _Target:
         if node.kind != "declaration":
             return tuple(list_arguments(node))
         for _, value in declared_in(node):
-            return tuple(value.children) if value is not None else ()
+            return tuple(value.children)
         return ()
 
     def _class_named(self, written: str, node: CppNode) -> str | None:
         """Return the full name of the class of nodes that a name means; None for another class."""
-        function = self._unit.function_around(node)
-        scopes = self._unit.list_scopes(function) if function is not None else ()
+        scopes = self._unit.scopes_at(node)
         for meaning in self._unit.meanings(plain(written), scopes):
             if meaning in self._node_classes or meaning in cpp_table().nodes:
                 return meaning
@@ -273,47 +282,40 @@ class _Target:
     def _key_made(self, node: CppNode) -> NodeKey | None:
         """Return the node that something makes; None for something else."""
         created = self._created_at.get(node)
-        if created is None:
+        if not created:
             return None
         return node if node in self._facts else created.class_name
 
     def _receiver(self, call: CppNode, function: CppFunction) -> NodeKey | None:
         """Return the node whose method a call is; None where that is not known."""
-        called = call.child("function")
-        is_member = called is not None and called.kind == "field_expression"
-        owner = called.child("argument") if called is not None and is_member else None
-        if owner is not None and owner.kind != "this":
+        owner = called_object(call)
+        if owner and owner.kind != "this":
             return self._holders.find_node(owner, function)
-        name = self._unit.find_owner(function)
+        name = function.class_name
         if name in self._facts:
             return name
         is_other = self._holders.has_other_base(name)
         is_own = not is_other or self._is_own_function(call, called_name(call), function)
         return None if is_own else Holder("own", name, "")
 
-    def _uses_in(self, function: CppFunction, name: str) -> CppNodes:
-        """Return where a function has a name."""
-        inside = function.node
-        uses = [use for use in self._unit.uses.get(name, ()) if use.file is inside.file]
-        return [use for use in uses if inside.start <= use.start < inside.end]
-
     def _give_object(self, created: _Created) -> None:
         """Note what is given a node that is made, which may declare or open more."""
-        function, key = self._unit.function_around(created.node), self._key_made(created.node)
-        if function is None or key is None:
+        function = self._unit.function_around(created.node)
+        key = self._key_made(created.node)
+        if not function or key is None:
             return
         variable = find_variable(created.node)
         is_held = self._give(created.node, function, key)
-        if variable is None or is_held:
+        if not variable or is_held:
             return
         if variable.kind == "identifier" and variable.field == "declarator":
-            uses = self._uses_in(function, variable.text)
+            uses = self._unit.uses_in(function, variable.text)
         else:
-            uses = [*self._unit.uses.get(variable.text, ())]
+            uses = list(self._unit.uses.get(variable.text, ()))
         self._budget.charge(1 + len(uses))
         for use in uses:
             where = self._unit.function_around(use)
-            if where is not None:
+            if where:
                 self._give(find_object(use, _SAME), where, key)
 
     def _give(self, node: CppNode, function: CppFunction, key: NodeKey) -> bool:
@@ -321,12 +323,12 @@ class _Target:
 
         Something else that is given the node may declare or open more.
         """
-        subscription = self._subscription_of_filter(node)
-        if subscription is not None:
-            self._facts.setdefault(key, []).append(subscription)
+        opened = self._opened_by_taker(node)
+        if opened is not None:
+            self._facts.setdefault(key, []).extend(opened)
             return False
         holder = self._holders.holder_given(node, function)
-        if holder is not None:
+        if holder:
             self._flows.setdefault(key, {})[holder] = None
             self._pending.append(holder)
             return True
@@ -339,7 +341,7 @@ class _Target:
     def _follow_holders(self) -> None:
         """Note what is given the nodes that variables, parameters and members hold."""
         self._pending += [key for key in self._facts if isinstance(key, Holder)]
-        followed = set[Holder]()
+        followed = set()
         while self._pending:
             holder = self._pending.pop()
             if holder in followed:
@@ -347,7 +349,7 @@ class _Target:
             followed.add(holder)
             for use in self._holders.find_uses(holder):
                 function = self._unit.function_around(use)
-                if function is not None:
+                if function:
                     self._give(find_object(use, _SAME), function, holder)
         for name, node_class in self._node_classes.items():
             for base in node_class.bases:
@@ -365,7 +367,7 @@ class _Target:
                 reached[each] = None
                 self._budget.charge(1)
                 pending += self._flows.get(each, ())
-        return [*reached]
+        return list(reached)
 
     def _find_strangers(self) -> Iterator[NodeFacts]:
         """Yield the nodes of other programs that classes get, as those of controllers.
@@ -393,7 +395,7 @@ class _Target:
         if isinstance(holder.scope, str):
             return holder.scope
         function = self._unit.function_around(holder.scope)
-        return self._unit.find_owner(function) if function is not None else ""
+        return function.class_name if function else ""
 
     def _doubt_loose(self, call: CppNode) -> None:
         """Doubt what all nodes of the target do, as a call may be a method of each."""
@@ -406,8 +408,8 @@ class _Target:
 
     def _read_function(self, function: CppFunction) -> None:
         """Add what the calls in a function declare and open to the facts of its node."""
-        scopes = self._unit.list_scopes(function)
-        owner = self._unit.find_owner(function)
+        scopes = function.inner_scopes
+        owner = function.class_name
         for node in self._unit.calls_in(function):
             if node.kind == "this":
                 if owner in self._facts:
@@ -426,7 +428,7 @@ class _Target:
         self, call: CppNode, function: CppFunction, scopes: Sequence[str], owner: str
     ) -> None:
         name = called_name(call)
-        short = name.rpartition("::")[2]
+        short = short_name(name)
         if name in ACTIONS or f"rclcpp_action::{name}" in ACTIONS:
             self._read_action(call, name, function)
         elif short in METHODS and name == short:
@@ -484,19 +486,17 @@ class _Target:
 
     def _is_own_function(self, call: CppNode, name: str, function: CppFunction) -> bool:
         """Return whether a call certainly is one of a function of the files themselves."""
-        called = call.child("function")
-        if called is None or called.kind == "field_expression":
+        if called_object(call):
             return False
-        owner = self._unit.find_owner(function)
         return any(
-            self._unit.find_owner(candidate) in ("", owner)
+            candidate.class_name in ("", function.class_name)
             for candidate in self._unit.functions_by_name.get(name, ())
         )
 
     def _read_function_of_library(self, call: CppNode, function: CppFunction) -> None:
         """Add that a function such as rclcpp::create_timer() is given a node, which may be open."""
         name = called_name(call)
-        is_timer = name.rpartition("::")[2] in ("create_timer", "create_wall_timer")
+        is_timer = short_name(name) in ("create_timer", "create_wall_timer")
         if is_timer:
             return
         doubt = Doubt(f"what {name}() opens is not evaluated", call.location)
@@ -526,7 +526,7 @@ class _Target:
         if key is None:
             self.doubts.append(Doubt(f"the node of this {name}() is not known", call.location))
             return
-        scopes = self._unit.list_scopes(function)
+        scopes = function.inner_scopes
         for alternative in self._alternatives(value):
             endpoint = read_endpoint(ACTIONS[full], alternative, self._unit, scopes, position)
             self._facts.setdefault(key, []).append(endpoint)
@@ -536,29 +536,35 @@ class _Target:
     def _read_plain_action(self, call: CppNode) -> None:
         """Add a client of a service, whose function has the name of that of actions."""
         function = self._unit.function_around(call)
-        if function is not None and called_name(call) in METHODS:
-            self._read_method(call, function, self._unit.list_scopes(function))
+        if function and called_name(call) in METHODS:
+            self._read_method(call, function, function.inner_scopes)
 
-    def _subscription_of_filter(self, node: CppNode) -> Endpoint | None:
-        """Return the subscription of a filter of message_filters that is given a node.
+    def _opened_by_taker(self, node: CppNode) -> Sequence[Endpoint | NodeParameter] | None:
+        """Return what a library's object that is given a node opens and declares for it.
 
-        The result is None where something else is.
+        It is a filter of message_filters or an updater of diagnostics. The result is None where
+        something else is given the node.
         """
         given = node.parent
-        taker = given.parent if given is not None and given.kind in _LISTS else None
+        taker = node.parent.parent
         function = self._unit.function_around(node)
-        if given is None or taker is None or function is None:
+        if given.kind not in _LISTS or not function:
             return None
-        scopes = self._unit.list_scopes(function)
-        match = _FILTER.search(self._type_given(taker, scopes))
-        arguments = [child for child in given.children if child.kind != "comment"]
-        if match is None or arguments[:1] != [node]:
+        scopes = function.inner_scopes
+        written = self._type_given(taker, scopes)
+        arguments = given.code
+        is_first = arguments[:1] == [node]
+        if _UPDATER in self._unit.meanings(plain(_POINTER.sub("", written)), scopes):
+            return updater_facts(taker.location) if is_first else ()
+        match = _FILTER.search(written)
+        if not match or not is_first or called_name(taker) == "add":
             return None
         if _SUBSCRIBER not in self._unit.meanings(match["class"], scopes):
             return None
         type_name = message_type(match["type"], self._unit, scopes)
         values = [self._evaluation.evaluate_node(argument) for argument in arguments]
-        return filter_subscription(type_name, values, taker.location)
+        subscription = filter_subscription(type_name, values, taker.location)
+        return None if not subscription else (subscription,)
 
     def _type_given(self, taker: CppNode, scopes: Sequence[str]) -> str:
         """Return the type, as it is written, of what gets the given arguments.
@@ -566,17 +572,16 @@ class _Target:
         It gets the arguments of a call, of an initializer or of a declaration. The result is
         empty where it is not known.
         """
-        name: CppNode | None = None
-        if taker.kind == "call_expression" and called_name(taker) == "subscribe":
-            name = _owner_called(taker)
+        if taker.kind == "call_expression" and called_name(taker) in _OF_OWNER:
+            owner = called_object(taker)
+            name = owner.child("field") if owner.kind == "field_expression" else owner
         elif taker.kind == "field_initializer":
-            name = taker.children[0]
-        elif taker.kind == "init_declarator" and taker.parent is not None:
-            kind = taker.parent.child("type")
-            return kind.text if kind is not None else ""
+            name = taker.first
+        elif taker.kind == "init_declarator":
+            return taker.parent.child("type").text
         else:
             return class_written(taker)
-        variables = self._unit.variables_named(name.text, scopes) if name is not None else ()
+        variables = self._unit.variables_named(name.text, scopes)
         return variables[0].type if len(variables) == 1 else ""
 
     # --- Results
@@ -596,52 +601,26 @@ class _Target:
 
     def _make_node(self, key: str | CppNode) -> NodeFacts:
         if isinstance(key, str):
-            name, at = self._names[key], self._node_classes[key].node.location
+            name = self._names[key]
+            at = self._node_classes[key].node.location
         else:
-            name, at = self._name_of_object(key), key.location
-        given_name = name if isinstance(name, str) else None
-        class_name = key if isinstance(key, str) else ""
-        return self._collect_facts(self._reached_from(key), class_name, given_name, at)
+            name = self._name_of_object(key)
+            at = key.location
+        class_name = as_text(key) or ""
+        return self._collect_facts(self._reached_from(key), class_name, as_text(name), at)
 
     def _collect_facts(
         self, keys: Sequence[NodeKey], class_name: str, name: str | None, at: Location
     ) -> NodeFacts:
         """Return a node with the facts of all that holds it."""
-        endpoints: dict[Endpoint, None] = {}
-        parameters: list[NodeParameter] = []
-        timers: list[Timer] = []
-        doubts: dict[Doubt, None] = {}
-        frames: list[NodeFrame] = []
-        transforms: list[NodeTransform] = []
-        for fact in [fact for key in keys for fact in self._facts.get(key, ())]:
-            match fact:
-                case Endpoint():
-                    known = self._encodings.get(fact.location, ())
-                    endpoints[fact._replace(encodings=known)] = None
-                case NodeParameter():
-                    parameters.append(fact)
-                case Timer():
-                    timers.append(fact)
-                case Doubt():
-                    doubts[fact] = None
-                case NodeFrame():
-                    frames.append(fact)
-                case NodeTransform():
-                    transforms.append(fact)
-        return NodeFacts(
-            class_name=class_name,
-            name=name,
-            location=at,
-            endpoints=tuple(endpoints),
-            parameters=tuple(parameters),
-            timers=tuple(timers),
-            doubts=tuple(doubts),
-            frames=tuple(frames),
-            transforms=tuple(transforms),
-        )
+        facts = [fact for key in keys for fact in self._facts.get(key, ())]
+        node = make_node(facts, self._encodings, class_name, name, at)
+        endpoints = dict.fromkeys(node.endpoints)
+        doubts = dict.fromkeys(node.doubts)
+        return node._replace(endpoints=tuple(endpoints), doubts=tuple(doubts))
 
     @cached_property
-    def _encodings(self) -> Mapping[Location, tuple[ImageEncoding, ...]]:
+    def _encodings(self) -> EncodingsByLocation:
         """The encodings of images, by the places of the endpoints that send or get them."""
         return self.content.encodings()
 
@@ -649,27 +628,24 @@ class _Target:
         """Return the name that a node of rclcpp's own class is given."""
         arguments = self._created_at[node].arguments
         name = self._evaluation.evaluate_node(arguments[0]) if arguments else None
-        return name if isinstance(name, str) else None
+        return as_text(name)
 
     @cached_property
     def _names(self) -> Mapping[str, _Name]:
         """The name that each class gives its node."""
         names_of_classes: dict[str, set[_Name]] = {name: set() for name in self._node_classes}
         for function in self._unit.functions:
-            owner = self._unit.find_owner(function)
-            if owner in names_of_classes and function.name == owner.rpartition("::")[2]:
+            owner = function.class_name
+            if owner in names_of_classes and function.name == short_name(owner):
                 names_of_classes[owner] |= set(self._names_in(function))
-        return {
-            name: names.pop() if len(names) == 1 else None
-            for name, names in names_of_classes.items()
-        }
+        return {name: only_one(names) for name, names in names_of_classes.items()}
 
     def _names_in(self, constructor: CppFunction) -> Iterator[_Name]:
         """Yield the name that a constructor gives its base class, if that is rclcpp's own."""
-        scopes = self._unit.list_scopes(constructor)
+        scopes = constructor.inner_scopes
         for initializers in constructor.node.of_kind("field_initializer_list"):
             for each in initializers.of_kind("field_initializer"):
-                written = each.children[0].text if each.children else ""
+                written = each.first.text
                 meanings = {*self._unit.meanings(plain(written), scopes)}
                 is_base = bool(meanings & cpp_table().nodes)
                 is_short = any(
@@ -686,18 +662,16 @@ class _Target:
             return value
         if isinstance(value, CppName):
             for position, parameter in enumerate(constructor.parameters):
-                declarator = parameter.child("declarator")
-                name = name_in(declarator) if declarator is not None else None
-                if name is not None and name.text == value.name:
+                if name_in(parameter.child("declarator")).text == value.name:
                     default = parameter.child("default_value")
                     return _Parameter(position, self._evaluation.evaluate_node(default))
         return None
 
-    def _note_namespace(self, given: Sequence[CppNode], constructor: CppFunction) -> None:
+    def _note_namespace(self, given: CppNodes, constructor: CppFunction) -> None:
         """Add that a node is given a namespace."""
         second = self._evaluation.evaluate_node(given[1]) if len(given) > 1 else None
         if isinstance(second, str) and second not in ("", "/"):
-            self._facts[self._unit.find_owner(constructor)].append(
+            self._facts[constructor.class_name].append(
                 Doubt("its program gives it a namespace", given[1].location)
             )
 
@@ -721,9 +695,10 @@ class _Target:
 
     def unregistered(self, package: Package) -> CodeFaults:
         """Yield the components that CMakeLists.txt registers and no source does."""
-        target, setup = self._compiled.target, package.installation
+        target = self._compiled.target
+        setup = package.installation
         is_read = target.is_certain and not self._compiled.unread
-        if setup is None or not is_read or "CLASS_LOADER_REGISTER_CLASS" in self._unit.uses:
+        if not setup or not is_read or "CLASS_LOADER_REGISTER_CLASS" in self._unit.uses:
             return
         registered: dict[str, Location] = {}
         for file in self._unit.files:
@@ -735,25 +710,21 @@ class _Target:
             guess = f"; did you mean {meant!r}?" if meant is not None else ""
             message = f"no source registers the component {component.plugin!r}{guess}"
             related = registered[meant] if meant is not None else None
-            at, is_started = setup.location(component.at), bool(component.executable)
-            yield CodeFault("component-macro", message, at, related, is_certain=is_started)
+            at = setup.location(component.at)
+            yield CodeFault("component-macro", message, at, related)
 
     def programs(self, package: Package) -> Iterator[NodeProgram]:
         """Yield the programs that the target is, and those of its components."""
         target = self._compiled.target
         if target.kind == "executable":
-            mains = [
-                function
-                for function in self._unit.functions
-                if function.name == "main" and not function.owner
-            ]
+            mains = self._unit.mains
             nodes = tuple(self._started_by(started) for started in self._created)
             at = mains[0].node.location if mains else self._start
             path = at.path.removeprefix(package.path(""))
             name = target.program or target.name
             program = NodeProgram(name, nodes if mains else (), at, path, "main")
             yield program._replace(may_have_more=self._may_have_more)
-        if package.installation is not None:
+        if package.installation:
             yield from self._programs_of_components(package.installation)
 
     @property
@@ -772,8 +743,7 @@ class _Target:
         """Return whether a class that is made is in the namespace of a package that is not read."""
         if not written or _MESSAGE_PART.search(written):
             return False
-        function = self._unit.function_around(node)
-        scopes = self._unit.list_scopes(function) if function is not None else ()
+        scopes = self._unit.scopes_at(node)
         is_known = False
         for meaning in self._unit.meanings(plain(written), scopes):
             is_known = is_known or "::" not in meaning or meaning in self._unit.classes
@@ -793,25 +763,17 @@ class _Target:
         """Return the node that an object is, with the name that its constructor is given."""
         if created.node in self._facts:
             return self._node(created.node)
-        node, name = self._node(created.class_name), self._names[created.class_name]
+        node = self._node(created.class_name)
+        name = self._names[created.class_name]
         if not isinstance(name, _Parameter):
             return node
-        given: CppValue = name.default
+        given = name.default
         if name.position < len(created.arguments):
             given = self._evaluation.evaluate_node(created.arguments[name.position])
-        return node._replace(name=given if isinstance(given, str) else None)
+        return node._replace(name=as_text(given))
 
 
 def _is_harmless(taker: str) -> bool:
     """Return whether what is given a node declares and opens nothing that is not listed."""
-    short = taker.rpartition("::")[2]
+    short = short_name(taker)
     return taker in ACTIONS or short in METHODS or short in cpp_table().harmless
-
-
-def _owner_called(call: CppNode) -> CppNode | None:
-    """Return the variable or member whose method is called."""
-    called = call.child("function")
-    owner = called.child("argument") if called is not None else None
-    if owner is not None and owner.kind == "field_expression":
-        return owner.child("field")
-    return owner

@@ -1,10 +1,8 @@
 """C++ programs and components that do not link, do not compile, or stop when they make a node."""
 
-import re
-from collections.abc import Sequence
-
-from grader.ros.cpp.declarations import CppClass, plain
-from grader.ros.cpp.syntax import CppNode
+from grader.base.patterns import on_use
+from grader.ros.cpp.declarations import CppClass, plain, short_name
+from grader.ros.cpp.syntax import CppNode, CppNodes
 from grader.ros.cpp.unit import CppUnit, called_name
 from grader.ros.known.cmake_words import cmake_words
 from grader.ros.nodes.cpp.cpp_files import CompiledTarget
@@ -14,12 +12,12 @@ from grader.ros.nodes.node_facts import (
 )
 
 _SOURCES = (".cpp", ".cc", ".cxx", ".c++")
-_MAIN = re.compile(r"(?<![a-z])main(?![a-z])")
-_REGISTERED = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(\s*([\w:]+)\s*\)")
+_MAIN = on_use(r"(?<![a-z])main(?![a-z])")
+_REGISTERED = on_use(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(\s*([\w:]+)\s*\)")
 _INIT = ("init", "init_and_remove_ros_arguments", "Context", "InitOptions")
 _OPTIONS = "NodeOptions"
 # What NodeOptions is not converted to.
-_OTHER_TYPES = re.compile(
+_OTHER_TYPES = on_use(
     r"(?:const\s+)?(?:std::string(?:_view)?|bool|char|int|float|double|(?:unsigned|long|short)\b.*"
     r"|std::(?:size_t|u?int\d+_t)|size_t|u?int\d+_t)(?:\s+const)?"
 )
@@ -34,7 +32,8 @@ def program_faults(compiled: CompiledTarget, *, starts_nodes: bool) -> CodeFault
         compiled: The target with its files.
         starts_nodes: Whether its functions make nodes.
     """
-    target, unit = compiled.target, compiled.unit
+    target = compiled.target
+    unit = compiled.unit
     if compiled.unread or not target.is_certain or target.has_other_sources:
         return
     yield from _components_without_constructor(unit)
@@ -46,10 +45,12 @@ def program_faults(compiled: CompiledTarget, *, starts_nodes: bool) -> CodeFault
 
 def _without_main(compiled: CompiledTarget) -> CodeFaults:
     """Yield that no source of a program has a main()."""
-    target, unit = compiled.target, compiled.unit
-    others = (*target.links, *target.packages)
+    target = compiled.target
+    unit = compiled.unit
+    others = target.links + target.packages
     for file in unit.files:
-        words = (*file.words, *file.called_macros, *file.macros, *file.includes)
+        macros = [macro.name for macro in file.macros]
+        words = (*file.words, *file.called_macros, *macros, *file.includes)
         if any(_MAIN.search(word.lower()) for word in words):
             return
     if any(_MAIN.search(name.lower()) for name in others) or not target.sources:
@@ -65,17 +66,16 @@ def _without_init(compiled: CompiledTarget) -> CodeFaults:
 
     A library that is not read may call it, and so may what main() gives its arguments.
     """
-    target, unit = compiled.target, compiled.unit
-    mains = [each for each in unit.functions if each.name == "main" and not each.owner]
-    if len(mains) != 1 or any(not file.words.isdisjoint(_INIT) for file in unit.files):
+    target = compiled.target
+    unit = compiled.unit
+    if len(unit.mains) != 1 or any(not file.words.isdisjoint(_INIT) for file in unit.files):
         return
-    links = {name.partition("::")[0] for name in (*target.links, *target.packages)}
+    links = {name.partition("::")[0] for name in target.links + target.packages}
     if not all(_is_known_library(name) for name in links):
         return
-    [main] = mains
+    [main] = unit.mains
     parameters = {word.text for each in main.parameters for word in each.walk()}
-    body = main.body
-    for node in body.walk() if body is not None else ():
+    for node in main.body.walk():
         if node.kind == "identifier" and node.text in parameters:
             return  # it is given away
     message = "main() calls no rclcpp::init(), so the node is not made: the context is not valid"
@@ -111,10 +111,10 @@ def _components_without_constructor(unit: CppUnit) -> CodeFaults:
 def _takes_options(unit: CppUnit, each: CppClass, depth: int) -> bool | None:
     """Return whether a class can be made of NodeOptions; None where that is not known."""
     body = each.node.child("body")
-    if body is None or each.is_conditional or each.is_template or depth > 5:
+    if not body or each.is_conditional or each.is_template or depth > 5:
         return None
-    short = each.name.rpartition("::")[2]
-    answers: list[bool | None] = []
+    short = short_name(each.name)
+    answers = []
     for node in body.children:
         if node.kind.startswith("preproc") or node.kind == "template_declaration":
             return None
@@ -133,7 +133,7 @@ def _inherits(unit: CppUnit, each: CppClass, using: CppNode, depth: int) -> bool
     written = plain(using.text.removeprefix("using").strip(" ;\n"))
     base, _, last = written.rpartition("::")
     scopes = each.name.split("::")[:-1]
-    if base.rpartition("::")[2] != last:
+    if short_name(base) != last:
         return False  # of another name
     for meaning in unit.meanings(base, scopes):
         if meaning in ("rclcpp::Node", "rclcpp_lifecycle::LifecycleNode"):
@@ -143,27 +143,25 @@ def _inherits(unit: CppUnit, each: CppClass, using: CppNode, depth: int) -> bool
     return None
 
 
-def _constructor_in(node: CppNode, short: str) -> Sequence[CppNode] | None:
+def _constructor_in(node: CppNode, short: str) -> CppNodes | None:
     """Return the parameters of a constructor; None for another member."""
     if node.kind not in ("function_definition", "declaration", "field_declaration"):
         return None
     declarator = node.child("declarator")
-    if declarator is None or declarator.kind != "function_declarator" or node.child("type"):
+    if declarator.kind != "function_declarator" or node.child("type"):
         return None
-    name, parameters = declarator.child("declarator"), declarator.child("parameters")
-    if name is None or name.text != short or parameters is None:
-        return None
-    return [child for child in parameters.children if child.kind != "comment"]
+    is_of_class = declarator.child("declarator").text == short
+    return declarator.child("parameters").code if is_of_class else None
 
 
-def _accepts(parameters: Sequence[CppNode]) -> bool | None:
+def _accepts(parameters: CppNodes) -> bool | None:
     """Return whether a constructor can be called with one NodeOptions."""
     needed = [each for each in parameters if each.kind != "optional_parameter_declaration"]
     if not parameters or len(needed) > 1:
         return False
     kind = parameters[0].child("type")
-    if kind is None or parameters[0].kind == "variadic_parameter_declaration":
+    if not kind or parameters[0].kind == "variadic_parameter_declaration":
         return None
-    if kind.text.rpartition("::")[2] == _OPTIONS:
+    if short_name(kind.text) == _OPTIONS:
         return True
     return False if _OTHER_TYPES.fullmatch(kind.text) else None

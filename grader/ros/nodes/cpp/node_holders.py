@@ -9,21 +9,29 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from typing import Literal, NamedTuple
 
+from grader.base.grouping import Strings, only_one
 from grader.ros.cpp.declarations import (
     CppFunction,
-    CppVariable,
     declared_in,
     find_declaration,
     is_argument,
     name_in,
     plain,
+    short_name,
 )
 from grader.ros.cpp.objects import class_written, made_in
 from grader.ros.cpp.syntax import (
+    NO_NODE,
     CppNode,
     CppNodes,
 )
-from grader.ros.cpp.unit import CppUnit, called_name, list_arguments, template_arguments
+from grader.ros.cpp.unit import (
+    CppUnit,
+    called_name,
+    called_object,
+    list_arguments,
+    template_arguments,
+)
 from grader.ros.known.package_tables import cpp_table
 from grader.ros.python.budget import Budget
 
@@ -77,10 +85,12 @@ class NodeHolders:
             node_made: Returns the key of the node that a call or declaration makes.
             budget: What is charged.
         """
-        self._unit, self._classes, self._budget = unit, node_classes, budget
+        self._unit = unit
+        self._classes = node_classes
+        self._budget = budget
         self._node_made = node_made
         self._declared: dict[tuple[CppNode, str], CppNodes] = {}
-        self._types: dict[tuple[str, tuple[str, ...]], bool] = {}
+        self._types: dict[tuple[str, Strings], bool] = {}
 
     # --- Types
     # ----------------------------------------------------------------------
@@ -95,7 +105,7 @@ class NodeHolders:
 
     def _names_node(self, written: str, scopes: Sequence[str]) -> bool:
         outer, _, inner = written.partition("<")
-        if inner and plain(outer).rpartition("::")[2] in ("shared_ptr", "weak_ptr", "unique_ptr"):
+        if inner and short_name(plain(outer)) in ("shared_ptr", "weak_ptr", "unique_ptr"):
             return self.is_node_type(inner.rpartition(">")[0], scopes)
         words = [word for word in written.split() if word not in ("const", "typename", "class")]
         name = plain("".join(words).rstrip("&*"))
@@ -133,8 +143,7 @@ class NodeHolders:
         """Return whether a type is a parameter of the template that a class is."""
         words = set(re.findall(r"\w+", written))
         for each in self._unit.classes.get(name, ()):
-            parameters = each.node.parent.child("parameters") if each.node.parent else None
-            for parameter in parameters.children if parameters is not None else ():
+            for parameter in each.node.parent.child("parameters").children:
                 if parameter.text.split()[-1] in words:
                     return True
         return False
@@ -148,7 +157,7 @@ class NodeHolders:
         if depth > _MAX_DEPTH:
             return None
         if node.kind == "this":
-            owner = self._unit.find_owner(function)
+            owner = function.class_name
             is_own = owner in self._classes and owner not in cpp_table().nodes
             return owner if is_own else None
         if node.kind in _NAMES:
@@ -156,7 +165,7 @@ class NodeHolders:
         if node.kind == "field_expression":
             return self._node_of_member(node, function)
         if node.kind in _SAME and node.children:
-            inner = node.child("argument") or node.children[0]
+            inner = node.child("argument") or node.first
             return self.find_node(inner, function, depth + 1)
         made = self._node_made(node)
         is_call = made is None and node.kind == "call_expression"
@@ -169,50 +178,40 @@ class NodeHolders:
             return None
         if declared:
             return self._node_of_local(declared[0], function, depth)
-        return self._holder_of_member(self._unit.find_owner(function), name)
+        return self._holder_of_member(function.class_name, name)
 
     def _declared_in(self, function: CppFunction, name: str) -> CppNodes:
         """Return the names in the declarations of a local variable or parameter of a function."""
         key = (function.node, name)
         if key not in self._declared:
             uses = self._uses_in(function, name)
-            self._declared[key] = [use for use in uses if find_declaration(use) is not None]
+            self._declared[key] = [use for use in uses if find_declaration(use)]
         return self._declared[key]
 
     def _uses_in(self, function: CppFunction, name: str) -> CppNodes:
-        inside, uses = function.node, self._unit.uses.get(name, ())
-        self._budget.charge(1 + len(uses))
-        in_file = [use for use in uses if use.file is inside.file]
-        return [use for use in in_file if inside.start <= use.start < inside.end]
+        self._budget.charge(1 + len(self._unit.uses.get(name, ())))
+        return self._unit.uses_in(function, name)
 
     def _is_assigned(self, function: CppFunction, name: str) -> bool:
         """Return whether a local variable gets another value than that of its declaration."""
         for use in self._uses_in(function, name):
-            around = use.parent
-            if (
-                around is not None
-                and around.kind == "assignment_expression"
-                and use.field == "left"
-            ):
+            if use.parent.kind == "assignment_expression" and use.field == "left":
                 return True
         return False
 
     def _node_of_local(self, name: CppNode, function: CppFunction, depth: int) -> NodeKey | None:
         """Return the node of a local variable: the one that it is made with, or what holds it."""
         declaration = find_declaration(name)
-        assert declaration is not None
-        kind, is_parameter = declaration.child("type"), declaration.kind in _PARAMETERS
-        is_node = kind is not None and self.is_node_type(
-            kind.text, self._unit.list_scopes(function)
-        )
-        if is_parameter:
+        kind = declaration.child("type").text
+        is_node = self.is_node_type(kind, function.inner_scopes)
+        if declaration.kind in _PARAMETERS:
             is_given = function.is_template
         else:
-            made = self._node_made(made_in(name.parent)) if name.parent is not None else None
+            made = self._node_made(made_in(name.parent))
             if made is not None and not self._is_assigned(function, name.text):
                 return made
-            value = dict(declared_in(declaration)).get(name)
-            is_given = value is not None and self.find_node(value, function, depth + 1) is not None
+            value = dict(declared_in(declaration)).get(name, NO_NODE)
+            is_given = bool(value) and self.find_node(value, function, depth + 1) is not None
         return Holder("local", function.node, name.text) if is_node or is_given else None
 
     def _holder_of_member(self, owner: str, name: str) -> Holder | None:
@@ -236,7 +235,8 @@ class NodeHolders:
 
     def with_bases(self, name: str) -> Iterator[str]:
         """Yield a class and those of its bases that the files define."""
-        pending, seen = [name], set[str]()
+        pending = [name]
+        seen = set()
         while pending:
             each = pending.pop(0)
             if each in seen or each not in self._unit.classes:
@@ -261,28 +261,25 @@ class NodeHolders:
 
     def _node_of_member(self, node: CppNode, function: CppFunction) -> NodeKey | None:
         """Return the node that a member of the object itself, or of another one, holds."""
-        owner, field = node.child("argument"), node.child("field")
-        if owner is None or field is None:
-            return None
-        if owner.kind == "this":
-            return self._holder_of_member(self._unit.find_owner(function), field.text)
-        classes = self._members.get(field.text, set())
-        return Holder("member", next(iter(classes)), field.text) if len(classes) == 1 else None
+        name = node.child("field").text
+        if node.child("argument").kind == "this":
+            return self._holder_of_member(function.class_name, name)
+        classes = self._members.get(name, set())
+        return Holder("member", next(iter(classes)), name) if len(classes) == 1 else None
 
     def _node_of_call(self, call: CppNode, function: CppFunction, depth: int) -> NodeKey | None:
         """Return the node that a call returns: what it is given, or a member of its object."""
-        name, called = _short_name(call), call.child("function")
-        is_method = called is not None and called.kind == "field_expression"
-        owner = called.child("argument") if called is not None and is_method else None
-        same = owner if name in _SAME_METHODS else None
+        name = short_name(called_name(call))
+        owner = called_object(call)
+        same = owner if name in _SAME_METHODS else NO_NODE
         if name in _SAME_FUNCTIONS:
-            same = next(iter(list_arguments(call)), None)
-        if same is not None:
+            same = next(iter(list_arguments(call)), NO_NODE)
+        if same:
             return self.find_node(same, function, depth + 1)
-        of_class = self._unit.find_owner(function)
+        of_class = function.class_name
         if name in _SAME_METHODS:
             return of_class if of_class in self._classes else None
-        is_own = owner is None or owner.kind == "this"
+        is_own = owner.kind in ("", "this")
         getters = self._methods_named(name, of_class if is_own else None)
         if len(getters) == 1:
             return self._node_returned(getters[0], depth)
@@ -293,27 +290,19 @@ class NodeHolders:
         """Return the methods of a class and its bases by their name, or those of any class."""
         owners = None if owner is None else {*self.with_bases(owner)}
         methods = []
-        for function in self._functions.get(name, ()):
-            of_class = self._unit.find_owner(function)
+        for function in self._unit.functions_by_name.get(name, ()):
+            of_class = function.class_name
             if of_class and (owners is None or of_class in owners):
                 methods.append(function)
         return methods
 
-    @cached_property
-    def _functions(self) -> dict[str, list[CppFunction]]:
-        functions: dict[str, list[CppFunction]] = {}
-        for function in self._unit.functions:
-            functions.setdefault(function.name, []).append(function)
-        return functions
-
     def _node_returned(self, getter: CppFunction, depth: int) -> NodeKey | None:
         """Return the node that a method returns, if its body is nothing but that."""
-        body = getter.body
-        statements = [child for child in body.children if child.kind != "comment"] if body else []
+        statements = getter.body.code
         if len(statements) != 1 or statements[0].kind != "return_statement":
             return None
-        returned = statements[0].children
-        return self.find_node(returned[0], getter, depth + 1) if returned else None
+        returned = statements[0].first
+        return self.find_node(returned, getter, depth + 1) if returned else None
 
     # --- What is given a node
     # ----------------------------------------------------------------------
@@ -323,9 +312,9 @@ class NodeHolders:
         for use in self._unit.uses.get(holder.name, ()):
             self._budget.charge(1)
             function = self._unit.function_around(use)
-            if function is None or find_declaration(use) is not None:
+            if not function or find_declaration(use):
                 continue
-            expression = use.parent if use.field == "field" and use.parent is not None else use
+            expression = use.parent if use.field == "field" else use
             if self.find_node(expression, function) == holder:
                 yield use
 
@@ -334,30 +323,26 @@ class NodeHolders:
 
         It is a parameter, a member or a variable; None where it is not known.
         """
-        argument = node
-        if is_argument(node) and node.parent is not None:
-            argument = node.parent
-        while argument.parent is not None and argument.parent.kind in _AROUND:
+        argument = node.parent if is_argument(node) else node
+        while argument.parent.kind in _AROUND:
             argument = argument.parent
         given = argument.parent
-        if given is None or given.kind not in _LISTS:
+        taker = argument.parent.parent
+        if given.kind not in _LISTS:
             return self._holder_set(argument, function)
-        taker = given.parent
-        if taker is None:
-            return None
-        if taker.kind == "call_expression" and _short_name(taker) in _SAME_FUNCTIONS:
+        if taker.kind == "call_expression" and short_name(called_name(taker)) in _SAME_FUNCTIONS:
             return self.holder_given(taker, function)
         return self._holder_of_argument(taker, given, argument, function)
 
     def _holder_set(self, value: CppNode, function: CppFunction) -> Holder | None:
         """Return the variable or member that is set to a node, or declared with it."""
-        around, written = value.parent, None
-        if around is not None and around.kind == "assignment_expression" and value.field == "right":
+        around = value.parent
+        written = NO_NODE
+        if around.kind == "assignment_expression" and value.field == "right":
             written = around.child("left")
-        if around is not None and around.kind == "init_declarator" and value.field == "value":
-            declarator = around.child("declarator")
-            written = name_in(declarator) if declarator is not None else None
-        key = self.find_node(written, function) if written is not None else None
+        if around.kind == "init_declarator" and value.field == "value":
+            written = name_in(around.child("declarator"))
+        key = self.find_node(written, function) if written else None
         return key if isinstance(key, Holder) else None
 
     def _holder_of_argument(
@@ -365,82 +350,69 @@ class NodeHolders:
     ) -> Holder | None:
         """Return the parameter, or the member, that gets an argument."""
         if taker.kind == "field_initializer":
-            member = self._holder_of_member(self._unit.find_owner(function), taker.children[0].text)
-            if member is not None:
+            member = self._holder_of_member(function.class_name, taker.first.text)
+            if member:
                 return member
-        arguments = [child for child in given.children if child.kind != "comment"]
+        arguments = given.code
         position = arguments.index(argument) if argument in arguments else -1
         parameters = []
         for candidate in self._called_by(taker, function):
             name = self._parameter_at(candidate, position, len(arguments))
-            if name is not None:
+            if name:
                 parameters.append(Holder("local", candidate.node, name))
-        return parameters[0] if len(parameters) == 1 else None
+        return only_one(parameters)
 
-    def _parameter_at(self, function: CppFunction, position: int, count: int) -> str | None:
-        """Return the name of the parameter that gets a node; None where none may."""
+    def _parameter_at(self, function: CppFunction, position: int, count: int) -> str:
+        """Return the name of the parameter that gets a node; empty where none may."""
         parameters = function.parameters
         needed = [each for each in parameters if each.kind == "parameter_declaration"]
         if not 0 <= position < len(parameters) or not len(needed) <= count <= len(parameters):
-            return None
+            return ""
         kind, declarator = (parameters[position].child(role) for role in ("type", "declarator"))
-        name = name_in(declarator) if declarator is not None else None
-        scopes = self._unit.list_scopes(function)
-        is_node = kind is not None and self.is_node_type(kind.text, scopes)
-        return name.text if name is not None and (is_node or function.is_template) else None
+        is_node = self.is_node_type(kind.text, function.inner_scopes)
+        return name_in(declarator).text if is_node or function.is_template else ""
 
     def _called_by(self, taker: CppNode, function: CppFunction) -> Sequence[CppFunction]:
         """Return the functions and constructors that may get the arguments of something."""
         if taker.kind == "call_expression":
             return self._called_in(taker, function)
-        owner = self._unit.find_owner(function)
+        owner = function.class_name
         if taker.kind == "field_initializer":
-            return self._constructors(self._type_of_member(taker.children[0].text, owner), function)
-        written = class_written(taker)
-        if not written and taker.parent is not None:
-            written = class_written(taker.parent)
+            return self._constructors(self._type_of_member(taker.first.text, owner), function)
+        written = class_written(taker) or class_written(taker.parent)
         return self._constructors(written, function)
 
     def _called_in(self, call: CppNode, function: CppFunction) -> Sequence[CppFunction]:
         """Return the functions, methods and constructors that a call may mean."""
-        name, owner, called = (
-            called_name(call),
-            self._unit.find_owner(function),
-            call.child("function"),
-        )
+        name = called_name(call)
+        owner = function.class_name
         scope, _, short = name.rpartition("::")
         types = template_arguments(call)
         if short in _MAKERS:
             return self._constructors(types[0] if types else scope, function)
-        if called is not None and called.kind == "field_expression":
-            return self._called_methods(called, short, function)
+        receiver = called_object(call)
+        if receiver:
+            return self._called_methods(receiver, short, function)
         methods = self._methods_named(short, owner) if owner and short == name else []
-        free = [each for each in self._functions.get(short, ()) if not self._unit.find_owner(each)]
-        return methods or [*free, *self._constructors(name, function)]
+        free = [each for each in self._unit.functions_by_name.get(short, ()) if not each.class_name]
+        return methods or (free + self._constructors(name, function))
 
     def _called_methods(
-        self, called: CppNode, name: str, function: CppFunction
+        self, receiver: CppNode, name: str, function: CppFunction
     ) -> Sequence[CppFunction]:
         """Return the methods of an object of a name, or what emplace() of a member constructs."""
-        owner, receiver = self._unit.find_owner(function), called.child("argument")
-        is_own = receiver is not None and receiver.kind == "this"
-        methods = self._methods_named(name, owner if is_own else None)
-        member = receiver.text if receiver is not None else ""
-        return [*methods, *self._constructors_of_pointer(member, name, owner, function)]
-
-    def _constructors_of_pointer(
-        self, member: str, method: str, owner: str, function: CppFunction
-    ) -> Sequence[CppFunction]:
-        """Return the constructors that emplace() or reset() of a member calls."""
-        if method not in ("emplace", "emplace_back"):
-            return ()
-        kind = self._type_of_member(member, owner)
-        return self._constructors(kind.partition("<")[2].rpartition(">")[0], function)
+        owner = function.class_name
+        methods = self._methods_named(name, owner if receiver.kind == "this" else None)
+        if name not in ("emplace", "emplace_back"):
+            return methods
+        kind = self._type_of_member(receiver.text, owner)
+        inner = kind.partition("<")[2].rpartition(">")[0]
+        return methods + self._constructors(inner, function)
 
     def _type_of_member(self, name: str, owner: str) -> str:
         """Return the type of a member of a class, as it is written, or the name of a base."""
         for each in self.with_bases(owner):
-            variables: Sequence[CppVariable] = self._unit.variables.get(f"{each}::{name}", ())
+            variables = self._unit.variables.get(f"{each}::{name}", ())
             if variables:
                 return variables[0].type
         return name
@@ -450,13 +422,9 @@ class NodeHolders:
         if not written:
             return []
         constructors = []
-        for meaning in self._unit.meanings(plain(written), self._unit.list_scopes(function)):
-            short = meaning.rpartition("::")[2]
-            for candidate in self._functions.get(short, ()):
-                if self._unit.find_owner(candidate) == meaning:
+        for meaning in self._unit.meanings(plain(written), function.inner_scopes):
+            short = short_name(meaning)
+            for candidate in self._unit.functions_by_name.get(short, ()):
+                if candidate.class_name == meaning:
                     constructors.append(candidate)
         return constructors
-
-
-def _short_name(call: CppNode) -> str:
-    return called_name(call).rpartition("::")[2]

@@ -1,11 +1,20 @@
 """What calls of rclcpp declare and open: one recorded call to the facts of a node."""
 
-import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from grader.base.grouping import as_list, as_text, only_one
+from grader.base.patterns import on_use
 from grader.base.source import Location
-from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue, not_known
-from grader.ros.cpp.declarations import plain
+from grader.ros.cpp.cpp_values import (
+    INTEGERS,
+    CppCall,
+    CppName,
+    CppSum,
+    CppValue,
+    as_scalar,
+    not_known,
+)
+from grader.ros.cpp.declarations import plain, short_name
 from grader.ros.cpp.literals import SECONDS
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import CppUnit
@@ -13,6 +22,7 @@ from grader.ros.known.package_tables import cpp_table
 from grader.ros.nodes.node_facts import (
     Endpoint,
     EndpointKind,
+    NameOrParts,
     NamePart,
     NodeParameter,
     Qos,
@@ -20,7 +30,7 @@ from grader.ros.nodes.node_facts import (
 )
 from grader.ros.python.values import SCALARS, Value
 
-_MESSAGE = re.compile(r"(\w+)::(msg|srv|action)::(\w+)")
+_MESSAGE = on_use(r"(\w+)::(msg|srv|action)::(\w+)")
 _ENDPOINTS: Mapping[str, EndpointKind] = {
     "create_publisher": "publisher",
     "create_subscription": "subscription",
@@ -71,8 +81,7 @@ _WITHOUT_EFFECT = (
 )
 _BRANCHES = ("if_statement", "switch_statement", "conditional_expression", "catch_clause")
 _CATCHING = ("try_statement",)
-_EMPTY: Mapping[str, Value] = {"string": "", "string_view": "", "double": 0.0, "float": 0.0}
-_INTEGERS = ("int", "uint", "size_t", "long", "unsigned", "short")  # how their names begin
+_EMPTY = {"string": "", "string_view": "", "double": 0.0, "float": 0.0}
 _VALUE_METHODS = frozenset(
     {
         *("as_string", "as_double", "as_int", "as_bool", "as_string_array", "get_value", "get"),
@@ -131,12 +140,12 @@ def message_type(written: str, unit: CppUnit, scopes: Sequence[str]) -> str | No
     types = set()
     for meaning in unit.meanings(plain(written), scopes):
         match = _MESSAGE.fullmatch(meaning)
-        if match is not None:
+        if match:
             types.add(".".join(match.groups()))
-    return types.pop() if len(types) == 1 else None
+    return only_one(types)
 
 
-def read_name(value: CppValue, node: CppValue = None) -> tuple[str | None, tuple[NamePart, ...]]:
+def read_name(value: CppValue, node: CppValue = None) -> NameOrParts:
     """Return a name that is plain text, or the parts of one that is not.
 
     `node` is what has the node, if that is not the object itself.
@@ -198,7 +207,8 @@ def facts_of_method(
     call: CppCall, unit: CppUnit, scopes: Sequence[str]
 ) -> Iterator[Endpoint | NodeParameter | Timer]:
     """Yield what a method of a node declares, opens or reads."""
-    name, at = call.short, call.node.location
+    name = call.short
+    at = call.node.location
     if name in _ENDPOINTS:
         yield read_endpoint(_ENDPOINTS[name], call, unit, scopes)
     elif name in _TIMERS:
@@ -208,14 +218,22 @@ def facts_of_method(
     elif name == "declare_parameter":
         default = _converted(call.argument(1), call.types[0] if call.types else "")
         is_plain = len(call.args) < 3
-        is_unset = len(call.args) == 1 and bool(call.types)
-        declared = NodeParameter(_text(call.argument(0)), default, at, is_plain=is_plain)
-        yield declared._replace(is_unset=is_unset)
+        is_alone = len(call.args) == 1
+        declared = NodeParameter(as_text(call.argument(0)), default, at, is_plain=is_plain)
+        has_type = bool(call.types)
+        yield declared._replace(
+            is_unset=is_alone and has_type, is_untyped=is_alone and not has_type
+        )
     else:
         # With a second argument, it returns false for what is not declared.
         is_needed = name == "get_parameter" and len(call.args) == 1
-        read = NodeParameter(_text(call.argument(0)), None, at, is_declared=False)
-        yield read._replace(is_needed=is_needed, is_guard=name == "has_parameter")
+        read = NodeParameter(as_text(call.argument(0)), None, at, is_declared=False)
+        # The method that converts it right there, as as_int.
+        method = call.node.parent.child("field").text
+        conversion = method if method.startswith("as_") else ""
+        yield read._replace(
+            is_needed=is_needed, is_guard=name == "has_parameter", read_as=conversion
+        )
 
 
 def _duration(value: CppValue) -> float | None:
@@ -228,10 +246,11 @@ def _duration(value: CppValue) -> float | None:
 
 def _declared(call: CppCall, at: Location) -> Iterator[NodeParameter]:
     """Yield the parameters of declare_parameters: pairs of a name and a default."""
-    namespace, given = call.argument(0), call.argument(1)
+    namespace = call.argument(0)
+    given = call.argument(1)
     before = f"{namespace}." if namespace else ""
     if isinstance(given, CppCall):
-        given = [*given.args]
+        given = list(given.args)
     if not isinstance(given, list) or not isinstance(namespace, str):
         yield NodeParameter(None, not_known("it is computed"), at)
         return
@@ -246,10 +265,6 @@ def _declared(call: CppCall, at: Location) -> Iterator[NodeParameter]:
                 yield NodeParameter(None, not_known("it is computed"), at)
 
 
-def _text(value: CppValue) -> str | None:
-    return value if isinstance(value, str) else None
-
-
 def _converted(value: CppValue, written: str) -> Value:
     """Return the default of a parameter, as the type of its template argument has it.
 
@@ -260,7 +275,7 @@ def _converted(value: CppValue, written: str) -> Value:
     if isinstance(value, CppName) and "PARAMETER_" in value.name:
         return None
     converted = _of_type(value, written)
-    items = converted if isinstance(converted, list) else [converted]
+    items = as_list(converted)
     if all(isinstance(item, SCALARS) or item is None for item in items):
         return converted
     return not_known("the default is computed")
@@ -272,7 +287,7 @@ def _of_type(value: CppValue, written: str) -> Value:
         return _items_of_vector(value)
     if isinstance(value, list):
         return _in_braces(value, written)
-    return _scalar(value, plain(written).rpartition("::")[2])
+    return as_scalar(value, short_name(plain(written)))
 
 
 def _in_braces(items: Sequence[CppValue], written: str) -> Value:
@@ -280,34 +295,22 @@ def _in_braces(items: Sequence[CppValue], written: str) -> Value:
 
     Only the template argument says which: {"a"} may be a text or a list of texts.
     """
-    kind = plain(written).rpartition("::")[2]
-    if (kind in _EMPTY or kind == "bool" or kind.startswith(_INTEGERS)) and len(items) <= 1:
-        return _scalar(items[0] if items else _EMPTY.get(kind, 0), kind)
+    kind = short_name(plain(written))
+    if (kind in _EMPTY or kind == "bool" or kind.startswith(INTEGERS)) and len(items) <= 1:
+        return as_scalar(items[0] if items else _EMPTY.get(kind, 0), kind)
     inner = written.partition("<")[2].rpartition(">")[0]
     if not inner:
         return not_known("its type is not written")
-    return [_scalar(item, plain(inner)) for item in items]
+    return [as_scalar(item, plain(inner)) for item in items]
 
 
 def _items_of_vector(vector: CppCall) -> list[Value]:
     """Return the items that a vector is made of, of the type of its template argument."""
-    items = [*vector.args]
+    items = list(vector.args)
     if len(items) == 1 and isinstance(items[0], list):
         items = items[0]
     kind = plain(vector.types[0]) if vector.types else ""
-    return [_scalar(item, kind) for item in items]
-
-
-def _scalar(value: CppValue, kind: str) -> CppValue:
-    """Return a number as the type of a parameter has it."""
-    name = kind.rpartition("::")[2]
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return value
-    if name in ("double", "float"):
-        return float(value)
-    if name == "bool":
-        return bool(value)
-    return int(value) if name.startswith(_INTEGERS) else value
+    return [as_scalar(item, kind) for item in items]
 
 
 # --- Quality of service
@@ -332,7 +335,8 @@ def _qos(value: CppValue) -> Qos:
 
 def _constructed_qos(call: CppCall) -> Qos:
     if call.short == "QoS":
-        first, second = call.argument(0), call.argument(1)
+        first = call.argument(0)
+        second = call.argument(1)
         if second is not None:
             return _preset(second.name) if isinstance(second, CppName) else Qos()
         if isinstance(first, CppCall) and first.short == "KeepLast":
@@ -347,7 +351,7 @@ def _constructed_qos(call: CppCall) -> Qos:
 
 
 def _preset(name: str) -> Qos:
-    words = cpp_table().profiles.get(name.rpartition("::")[2], "").split()
+    words = cpp_table().profiles.get(short_name(name), "").split()
     if not words:
         return Qos()
     depth = int(words[0]) if words[0].isdigit() else None
@@ -372,7 +376,7 @@ def _with_policy(qos: Qos, call: CppCall) -> Qos:
 
 
 def _policy(name: str) -> str | None:
-    last = name.rpartition("::")[2]
+    last = short_name(name)
     for start in ("RMW_QOS_POLICY_RELIABILITY_", "RMW_QOS_POLICY_DURABILITY_"):
         last = last.removeprefix(start)
     return _VALUES.get(last.lower().replace("_", ""))

@@ -2,16 +2,15 @@
 
 import ast
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
-from grader.base.source import Location
-from grader.ros.nodes.message_uses import CodePart
+from grader.base.records import Named
+from grader.ros.nodes.message_uses import CodePart, FunctionKey
 from grader.ros.nodes.node_facts import (
     CodeFault,
     CodeFaults,
 )
 from grader.ros.python.constants import dotted
-from grader.ros.python.parse import AnyFunction, Code
+from grader.ros.python.parse import AnyFunction, Code, own_parameters
 from grader.ros.python.walking import walk
 
 # What sets the state of a goal: rclpy/rclpy/action/server.py of jazzy.
@@ -21,7 +20,7 @@ _ENDING_STATES = frozenset({"succeed", "abort", _CANCELS})
 _OF_RESULT = frozenset({"status", "result", "get_fields_and_field_types"})
 
 
-class RegisteredGoal(NamedTuple):
+class RegisteredGoal(Named):
     """A function that executes the goals of an action, and the call that is given it."""
 
     function: AnyFunction
@@ -36,7 +35,7 @@ def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Cod
     """
     for goal in registered:
         function = goal.function
-        names = [parameter.arg for parameter in function.args.args if parameter.arg != "self"]
+        names = own_parameters(function)
         if len(names) != 1 or function.decorator_list:
             continue
         used = _list_attributes(names[0], function)
@@ -60,7 +59,7 @@ def rejected_goals(code: Code, registered: Sequence[RegisteredGoal]) -> CodeFaul
 
     One that raises an error, or answers with what is computed, may accept goals elsewhere.
     """
-    if "register_goal_callback" in code.source.text:
+    if "register_goal_callback" in code.text:
         return
     for goal in registered:
         function = goal.function
@@ -81,12 +80,12 @@ def rejected_goals(code: Code, registered: Sequence[RegisteredGoal]) -> CodeFaul
 
 def _is_rejection(answer: ast.expr | None) -> bool:
     """Return whether an answer rejects a goal: what is no GoalResponse does so as well."""
-    if answer is None or isinstance(answer, ast.Constant):
+    if not answer or isinstance(answer, ast.Constant):
         return True
     return dotted(answer).endswith("GoalResponse.REJECT")
 
 
-class _OpenPaths(NamedTuple):
+class _OpenPaths(Named):
     """How statements are left on paths on which nothing has cancelled the goal."""
 
     reaches_end: bool = True
@@ -99,7 +98,7 @@ class _OpenPaths(NamedTuple):
 
 
 _NO_PATH = _OpenPaths(reaches_end=False)
-_LEAVING: Mapping[type[ast.stmt], _OpenPaths] = {
+_LEAVING = {
     ast.Return: _NO_PATH._replace(returns=True),
     ast.Break: _NO_PATH._replace(breaks=True),
     ast.Raise: _NO_PATH,
@@ -160,7 +159,7 @@ def _paths_of_loop(loop: ast.While | ast.For | ast.AsyncFor) -> _OpenPaths:
 
 def _paths_of_try(statement: ast.Try | ast.TryStar) -> _OpenPaths:
     """Return how a try statement may be left; what its finally block does counts on each path."""
-    paths = _paths_without_state([*statement.body, *statement.orelse])
+    paths = _paths_without_state(statement.body + statement.orelse)
     for handler in statement.handlers:
         paths = paths.joined(_paths_without_state(handler.body))
     last = _paths_without_state(statement.finalbody)
@@ -171,8 +170,8 @@ def _paths_of_try(statement: ast.Try | ast.TryStar) -> _OpenPaths:
 
 def _list_attributes(name: str, function: AnyFunction) -> set[str] | None:
     """Return the attributes of a variable that a function uses; None where it is used otherwise."""
-    used = set[str]()
-    owners = set[ast.AST]()
+    used = set()
+    owners = set()
     for node in walk(function):
         if isinstance(node, ast.Attribute):
             owners.add(node.value)
@@ -187,7 +186,7 @@ def _list_attributes(name: str, function: AnyFunction) -> set[str] | None:
 def loops_without_transforms(
     code: Code,
     registered: Sequence[RegisteredGoal],
-    methods: Mapping[tuple[Location | None, str], AnyFunction],
+    methods: Mapping[FunctionKey, AnyFunction],
 ) -> CodeFaults:
     """Yield loops of goals that look up transforms, which one thread does not read meanwhile."""
     own_methods = {name: function for (_, name), function in methods.items()}
@@ -209,8 +208,8 @@ def loops_without_transforms(
 
 def _looks_up(loop: ast.While, methods: Mapping[str, AnyFunction]) -> bool:
     """Return whether a loop looks up a transform, itself or by a method that it calls."""
-    nodes: list[ast.AST] = walk(loop)
-    for node in [*nodes]:
+    nodes = walk(loop)
+    for node in list(nodes):
         match node:
             case ast.Call(func=ast.Attribute(value=ast.Name(id="self"), attr=name)):
                 if name in methods:
@@ -225,10 +224,10 @@ def _looks_up(loop: ast.While, methods: Mapping[str, AnyFunction]) -> bool:
 def answers_for_results(
     code: Code,
     parts: Sequence[CodePart],
-    methods: Mapping[tuple[Location | None, str], AnyFunction],
+    methods: Mapping[FunctionKey, AnyFunction],
 ) -> CodeFaults:
     """Yield fields of a result that are read of the answer, which has it as its field `result`."""
-    callbacks: dict[tuple[Location | None, str], set[bool]] = {}
+    callbacks: dict[FunctionKey, set[bool]] = {}
     for part in parts:
         results = _result_futures(part)
         for call in part.calls:
@@ -240,7 +239,7 @@ def answers_for_results(
                     callbacks.setdefault(key, set()).add(is_result)
     for key, kinds in callbacks.items():
         function = methods.get(key)
-        if kinds == {True} and function is not None:
+        if kinds == {True} and function:
             yield from _wrong_fields(code, function)
 
 
@@ -263,7 +262,7 @@ def _asks_for_result(node: ast.expr) -> bool:
 
 def _wrong_fields(code: Code, function: AnyFunction) -> CodeFaults:
     """Yield the fields that the callback of a result reads of `future.result()`."""
-    names = [parameter.arg for parameter in function.args.args if parameter.arg != "self"]
+    names = own_parameters(function)
     if len(names) != 1:
         return
     answers = {f"{names[0]}.result"}

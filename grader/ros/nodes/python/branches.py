@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from grader.ros.nodes.message_uses import suppresses
 from grader.ros.python.constants import last_name
+from grader.ros.python.parse import caught_by
 from grader.ros.python.walking import children, walk
 
 _BRANCHES = (ast.If, ast.IfExp, ast.Match, ast.ExceptHandler)
@@ -14,7 +15,7 @@ _INTERRUPTS = frozenset({"KeyboardInterrupt", "SystemExit", "ExternalShutdownExc
 
 def calls_in_branches(tree: ast.Module) -> frozenset[ast.Call]:
     """Return the calls inside of conditions, but for that of a program: `__name__`."""
-    calls: list[ast.Call] = []
+    calls = []
     pending: list[tuple[ast.AST, bool]] = [(tree, False)]
     while pending:
         node, is_inside = pending.pop()
@@ -76,5 +77,4 @@ def calls_caught(tree: ast.Module) -> frozenset[ast.Call]:
 
 def may_catch_error(handler: ast.ExceptHandler) -> bool:
     """Return whether a handler may catch anything but what interrupts a program."""
-    kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-    return any(kind is None or last_name(kind) not in _INTERRUPTS for kind in kinds)
+    return any(not kind or last_name(kind) not in _INTERRUPTS for kind in caught_by(handler))

@@ -1,37 +1,39 @@
 """The transforms that Python code gives to a broadcaster of tf2: which frame is in which one."""
 
 import ast
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator
 from functools import partial
-from typing import NamedTuple
 
+from grader.base.records import Named
 from grader.base.source import Location
+from grader.base.text import last_part
 from grader.base.transforms import Transform
-from grader.ros.nodes.message_uses import given_argument
-from grader.ros.nodes.node_facts import NamePart, NodeFrame, NodeTransform
+from grader.ros.nodes.message_uses import Evaluate, given_argument
+from grader.ros.nodes.node_facts import NameOrParts, NodeFrame, NodeTransform
 from grader.ros.nodes.python.endpoint_names import Bindings
 from grader.ros.nodes.transform_poses import POSE_FIELDS, pose_set
 from grader.ros.python.constants import dotted
-from grader.ros.python.values import Value
 from grader.ros.python.walking import children, walk
+
+_Expression = ast.expr | None
 
 SENDS = "sendTransform"
 _KEEPING = (SENDS, "append")  # what is given a transform, and does not change it
-_PARENT, _CHILD = "header.frame_id", "child_frame_id"
+_PARENT = "header.frame_id"
+_CHILD = "child_frame_id"
 _STATIC = "StaticTransformBroadcaster"
 _PARAMETERS = ("get_parameter", "declare_parameter")
-_Name = tuple[str | None, tuple[NamePart, ...]]
 
 
-class SendingMethod(NamedTuple):
+class SendingMethod(Named):
     """A method that sends transforms, and how what it names is read."""
 
     node: ast.AST
     of_class: ast.AST  # the class of the node, where attributes of self are set
     bindings: Bindings
-    names: Callable[[ast.expr], Iterator[_Name]]  # that an expression may be
+    names: Callable[[ast.expr], Iterator[NameOrParts]]  # that an expression may be
     place: Callable[[ast.expr], Location]
-    value_of: Callable[[ast.expr], Value]
+    value_of: Evaluate
 
 
 def sent_transforms(method: SendingMethod, call: ast.Call) -> Iterator[NodeTransform]:
@@ -41,7 +43,8 @@ def sent_transforms(method: SendingMethod, call: ast.Call) -> Iterator[NodeTrans
     broadcaster = method.bindings.values.get(dotted(call.func.value))
     is_static = isinstance(broadcaster, ast.Call) and dotted(broadcaster.func).endswith(_STATIC)
     for item, added in _items_sent(method, call, given):
-        at, pose = method.place(call), _pose_sent(method, call, item)
+        at = method.place(call)
+        pose = _pose_sent(method, call, item)
         is_conditional = _is_decided_by_parameter(method, added)
         parents, children = _frames_set(method, call, item)
         for parent, parent_parts in parents:
@@ -57,8 +60,8 @@ def sent_transforms(method: SendingMethod, call: ast.Call) -> Iterator[NodeTrans
 
 
 def _frames_set(
-    method: SendingMethod, call: ast.Call, item: ast.expr | None
-) -> tuple[list[_Name], list[_Name]]:
+    method: SendingMethod, call: ast.Call, item: _Expression
+) -> tuple[list[NameOrParts], list[NameOrParts]]:
     """Return the names of the parent and of the child that a transform may have."""
     parents = _names_set(method, call, item, _PARENT)
     children = _names_set(method, call, item, _CHILD)
@@ -68,8 +71,8 @@ def _frames_set(
 
 
 def _items_sent(
-    method: SendingMethod, call: ast.Call, given: ast.expr | None
-) -> Iterator[tuple[ast.expr | None, ast.Call]]:
+    method: SendingMethod, call: ast.Call, given: _Expression
+) -> Iterator[tuple[_Expression, ast.Call]]:
     """Yield each transform that a call sends, with the call that adds it to a list."""
     name = given.id if isinstance(given, ast.Name) else ""
     made = method.bindings.values.get(name)
@@ -87,7 +90,7 @@ def _items_sent(
                     yield (node.args[0], node) if is_added else (None, call)
 
 
-def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> Transform | None:
+def _pose_sent(method: SendingMethod, call: ast.Call, item: _Expression) -> Transform | None:
     """Return T_parent_child of a transform that is sent; None where it is not known."""
     made = _resolve(method, item)
     if not isinstance(made, ast.Call):
@@ -95,13 +98,13 @@ def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> 
     given = {f for f in _fields_given(method, made) if f.startswith("transform")}
     if made is item or given:
         return pose_set(given, partial(_value_made, method, made), method.value_of)
-    name = dotted(item) if item is not None else ""
+    name = dotted(item) if item else ""
     around = method.of_class if name.startswith("self.") else method.node
     targets: set[str] = set()
     for node in walk(around):
         if _may_set(node, name, "transform") or _hands_on(node, name):
             return None
-        set_here: Sequence[ast.expr] = []
+        set_here = []
         if isinstance(node, ast.Assign):
             set_here = node.targets
         elif isinstance(node, ast.AugAssign):
@@ -113,18 +116,18 @@ def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> 
 
 
 def _names_set(
-    method: SendingMethod, call: ast.Call, item: ast.expr | None, field: str
-) -> list[_Name]:
+    method: SendingMethod, call: ast.Call, item: _Expression, field: str
+) -> list[NameOrParts]:
     """Return the names to which a field of a transform is set before it is sent."""
     value = None
     if isinstance(item, ast.Call):
         value = _value_made(method, item, field)
-    elif item is not None:
+    elif item:
         value = _value_set(method, call, dotted(item), field)
-    return [*method.names(value)] if value is not None else [(None, ())]
+    return list(method.names(value)) if value else [(None, ())]
 
 
-def _value_set(method: SendingMethod, call: ast.Call, name: str, field: str) -> ast.expr | None:
+def _value_set(method: SendingMethod, call: ast.Call, name: str, field: str) -> _Expression:
     """Return what a field of a transform is set to; None if that is not known.
 
     Of several values the last one before the call counts, if no branch or loop decides it.
@@ -132,7 +135,7 @@ def _value_set(method: SendingMethod, call: ast.Call, name: str, field: str) -> 
     if not name:
         return None
     around = method.of_class if name.startswith("self.") else method.node
-    statements: list[ast.Assign] = []
+    statements = []
     for node in walk(around):
         if isinstance(node, ast.Assign) and f"{name}.{field}" in map(dotted, node.targets):
             statements.append(node)
@@ -142,7 +145,7 @@ def _value_set(method: SendingMethod, call: ast.Call, name: str, field: str) -> 
         return _value_made(method, method.bindings.values.get(name), field)
     if len(statements) == 1:
         return statements[0].value
-    body: Sequence[ast.stmt] = getattr(method.node, "body", [])
+    body = getattr(method.node, "body", [])
     before = [each for each in statements if each.lineno < call.lineno]
     if before and all(each in body for each in statements):
         return max(before, key=lambda each: each.lineno).value
@@ -167,7 +170,7 @@ def _hands_on(node: ast.AST, name: str) -> bool:
     """Return whether a part of code may set the pose of a transform by another name, or unseen."""
     start = f"{name}.transform"
     for part in children(node):
-        written = dotted(part) if isinstance(part, ast.Name | ast.Attribute) else ""
+        written = dotted(part)
         if isinstance(node, ast.Attribute) or not (written == name or written.startswith(start)):
             continue
         is_set = not isinstance(getattr(part, "ctx", None), ast.Load)
@@ -186,10 +189,10 @@ def _hands_on(node: ast.AST, name: str) -> bool:
 
 def _calls_method(node: ast.AST, names: Collection[str]) -> bool:
     """Return whether a call is one of a method with one of these names."""
-    return isinstance(node, ast.Call) and dotted(node.func).rpartition(".")[2] in names
+    return isinstance(node, ast.Call) and last_part(dotted(node.func)) in names
 
 
-def _value_made(method: SendingMethod, made: ast.expr | None, field: str) -> ast.expr | None:
+def _value_made(method: SendingMethod, made: _Expression, field: str) -> _Expression:
     """Return what the call that makes a transform gives a field of it."""
     value = made
     for name in field.split("."):
@@ -201,10 +204,9 @@ def _value_made(method: SendingMethod, made: ast.expr | None, field: str) -> ast
     return value
 
 
-def _resolve(method: SendingMethod, node: ast.expr | None) -> ast.expr | None:
+def _resolve(method: SendingMethod, node: _Expression) -> _Expression:
     """Return the call that a name is bound to; another expression as it is."""
-    name = dotted(node) if isinstance(node, ast.Name | ast.Attribute) else ""
-    made = method.bindings.values.get(name)
+    made = method.bindings.values.get(dotted(node))
     return made if isinstance(made, ast.Call) else node
 
 
@@ -213,7 +215,8 @@ def _fields_given(method: SendingMethod, made: ast.Call) -> Iterator[str]:
     if made.args:
         yield "transform"  # of which nothing is known
     for keyword in made.keywords:
-        name, value = keyword.arg or "transform", _resolve(method, keyword.value)
+        name = keyword.arg or "transform"
+        value = _resolve(method, keyword.value)
         if isinstance(value, ast.Call) and value is not keyword.value:
             value = None  # it may be changed after it is made
         if isinstance(value, ast.Call) and value.keywords:
@@ -230,7 +233,7 @@ def _is_decided_by_parameter(method: SendingMethod, call: ast.Call) -> bool:
             tested = [node.test]
             for inner in walk(node.test):
                 bound = method.bindings.values.get(dotted(inner))
-                if bound is not None:
+                if bound:
                     tested.append(bound)
             if any(map(_names_parameter, tested)):
                 return True

@@ -8,11 +8,11 @@ defines again or replaces.
 import ast
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cached_property
-from typing import NamedTuple
 
-from grader.base.source import Location
+from grader.base.grouping import group_values
+from grader.base.records import Named
 from grader.base.text import counted
-from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
+from grader.ros.nodes.message_uses import ClassesByLocation, CodePart, certain_nodes, given_argument
 from grader.ros.nodes.node_facts import (
     CodeFault,
     CodeFaults,
@@ -25,7 +25,7 @@ from grader.ros.python.walking import walk
 _Function = AnyFunction | ast.Lambda
 
 
-class _CallbackRow(NamedTuple):
+class _CallbackRow(Named):
     """A parameter that is given a callback, and what that is called with.
 
     `most` is greater than `given` where rclpy gives another argument to who takes it.
@@ -59,7 +59,7 @@ _CALLBACKS: Mapping[str, Sequence[_CallbackRow]] = {
 _TIMER_INFO = "TimerInfo"  # which rclpy gives by name to the parameter that has it as annotation
 
 
-class _Scope(NamedTuple):
+class _Scope(Named):
     """A module, class or function: what binds each name in it, and its nodes.
 
     The nodes of functions and classes in it are not among its nodes.
@@ -76,10 +76,10 @@ class CallbackFunctions:
     the code of the package may replace.
     """
 
-    def __init__(
-        self, code: Code, classes: Mapping[Location, ast.ClassDef], replaced: Collection[str]
-    ) -> None:
-        self._code, self._classes, self._replaced = code, classes, replaced
+    def __init__(self, code: Code, classes: ClassesByLocation, replaced: Collection[str]) -> None:
+        self._code = code
+        self._classes = classes
+        self._replaced = replaced
         self._scopes: dict[ast.AST, _Scope] = {}
 
     def find(self, part: CodePart, given: ast.expr) -> _Function | None:
@@ -88,12 +88,12 @@ class CallbackFunctions:
             return given
         name = dotted(given)
         if name.startswith("self."):
-            owner = self._classes.get(part.of) if part.of is not None else None
-            return self._method(owner, name[5:]) if owner is not None else None
+            owner = self._classes.get(part.of) if part.of else None
+            return self._method(owner, name[5:]) if owner else None
         if not name or "." in name:
             return None
         inside = self._scope(part.node) if part.name else None
-        if inside is not None and _binders(inside, name):
+        if inside and _binders(inside, name):
             return _only_function(inside, name)
         return _only_function(self._module, name)
 
@@ -132,7 +132,7 @@ def wrong_callbacks(
 
     `is_of_rclpy` says whether a call surely is one of rclpy's.
     """
-    if "rclpy" not in code.source.text:
+    if "rclpy" not in code.text:
         return
     for part in parts:
         faults = []
@@ -151,10 +151,10 @@ def _find_faults(
     for callback in _CALLBACKS[called]:
         position = len(call.args) if callback.position is None else callback.position
         given = given_argument(call, position, callback.name)
-        if given is None:
+        if not given:
             continue
         function = functions.find(part, given)
-        if function is None or _is_given_time(called, function, code):
+        if not function or _is_given_time(called, function, code):
             continue
         is_method = dotted(given).startswith("self.")
         least, most = count_parameters(function, is_method=is_method)
@@ -195,9 +195,10 @@ def count_parameters(function: _Function, *, is_method: bool) -> tuple[float, fl
     parameters = function.args
     most: float = len(parameters.posonlyargs) + len(parameters.args) - is_method
     least: float = max(most - len(parameters.defaults), 0)
-    if parameters.vararg is not None:
-        most, least = float("inf"), max(least, 0)
-    if any(default is None for default in parameters.kw_defaults):
+    if parameters.vararg:
+        most = float("inf")
+        least = max(least, 0)
+    if any(not default for default in parameters.kw_defaults):
         least = float("inf")
     return least, most
 
@@ -207,7 +208,7 @@ def _is_given_time(called: str, function: _Function, code: Code) -> bool:
 
     It is by name, in the parameter whose annotation says so, from Jazzy on.
     """
-    if called != "create_timer" or _TIMER_INFO not in code.source.text:
+    if called != "create_timer" or _TIMER_INFO not in code.text:
         return False
     parameters = [*function.args.posonlyargs, *function.args.args, *function.args.kwonlyargs]
     return any(parameter.annotation is not None for parameter in parameters)
@@ -215,11 +216,7 @@ def _is_given_time(called: str, function: _Function, code: Code) -> bool:
 
 def _bound_names(nodes: Sequence[ast.AST]) -> dict[str, list[ast.AST]]:
     """Return what binds each name: functions, and anything else that does; `*` for all names."""
-    bound: dict[str, list[ast.AST]] = {}
-    for node in nodes:
-        for name in bound_names(node):
-            bound.setdefault(name, []).append(node)
-    return bound
+    return group_values((name, node) for node in nodes for name in bound_names(node))
 
 
 def _binders(scope: _Scope, name: str) -> list[ast.AST]:

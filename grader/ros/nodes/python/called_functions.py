@@ -1,14 +1,15 @@
 """Which functions of rclpy and tf2_ros a module calls, and what is wrong with their arguments."""
 
 import ast
-from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
+from grader.base.grouping import StringsByName, group_values
+from grader.base.text import first_part, last_part
 from grader.ros.known.releases import Release
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.python_calls import ArgumentKind, Written, WrongCall, wrong_call
 from grader.ros.python.bindings import names_bound
-from grader.ros.python.constants import dotted, last_name
+from grader.ros.python.constants import count_bound, dotted, last_name
 from grader.ros.python.parse import AnyFunction, Code
 from grader.ros.python.walking import walk
 
@@ -38,9 +39,11 @@ class CalledFunctions:
     ) -> None:
         """Search in all nodes of the code; the classes have no bases but those of rclpy."""
         self._nodes = node_classes
-        self._code, self._releases = code, releases
+        self._code = code
+        self._releases = releases
         self._stored = count_bound(nodes)
-        self._rebound, self._defined = {*self._stored}, set[str]()
+        self._rebound = {*self._stored}
+        self._defined = set[str]()
         self._bound_in: dict[ast.ClassDef, set[str]] = {}  # the names that bodies of classes bind
         self._named: dict[str, list[ast.ClassDef]] = {}  # the classes of each name
         self._owners: dict[ast.AST, list[ast.ClassDef]] = {}  # the classes that calls are in
@@ -54,7 +57,7 @@ class CalledFunctions:
                     self._lost.add(name)
         # The names that the module certainly imports, and does not bind to anything else.
         self._imports = {name: full for name, full in imports.items() if name not in self._lost}
-        self._made = _calls_bound(nodes)
+        self._made = group_values(bound_calls(nodes))
 
     def _add(self, node: ast.AST) -> None:
         """Keep the names that a node binds, and its calls if it is a class."""
@@ -76,7 +79,7 @@ class CalledFunctions:
         self,
         call: ast.Call,
         owner: ast.ClassDef | None,
-        filled: Mapping[str, str],
+        filled: StringsByName,
         known_kind: Callable[[ast.expr], ArgumentKind | None],
     ) -> WrongCall | None:
         """Return what is wrong with the arguments of a call in a method of a node's class.
@@ -99,7 +102,7 @@ class CalledFunctions:
         """Return the key of the table of calls for what is surely called."""
         name = dotted(call.func)
         receiver, _, method = name.rpartition(".")
-        if owner is not None and receiver == "self":
+        if owner and receiver == "self":
             return f"Node.{method}" if not self._is_replaced(method, owner) else None
         match call.func:
             case ast.Attribute(attr="__init__", value=ast.Call(func=ast.Name(id="super"), args=[])):
@@ -107,7 +110,7 @@ class CalledFunctions:
                 return "Node.__init__" if is_plain else None
         full = self._full_name(call.func)
         if full in _PLAIN_NODES or full.startswith(("rclpy.action.", "tf2_ros.")):
-            return f"{full.rpartition('.')[2]}.__init__"
+            return f"{last_part(full)}.__init__"
         if full.startswith("rclpy."):
             return full
         kind = self._kind_of_object(receiver)
@@ -123,7 +126,7 @@ class CalledFunctions:
     def _kind_of_object(self, name: str) -> str | None:
         """Return what a variable or attribute holds that the file binds once, if rclpy makes it."""
         calls = self._made.get(name, ())
-        if len(calls) != 1 or self._stored[name.rpartition(".")[2]] != 1:
+        if len(calls) != 1 or self._stored[last_part(name)] != 1:
             return None
         made = calls[0].func
         maker = last_name(made)
@@ -135,12 +138,13 @@ class CalledFunctions:
 
     def _is_node(self, node: ast.expr, call: ast.Call) -> bool:
         """Return whether the object whose method is called surely is a node of rclpy."""
-        name, method = dotted(node), last_name(call.func)
+        name = dotted(node)
+        method = last_name(call.func)
         if name == "self":
             owners = self._owners.get(call, ())
             return len(owners) == 1 and self._is_node_class(owners[0], method)
         made = self._made.get(name, ())
-        if len(made) != 1 or self._stored[name.rpartition(".")[2]] != 1:
+        if len(made) != 1 or self._stored[last_part(name)] != 1:
             return False
         full = self._full_name(made[0].func)
         owners = self._named.get(dotted(made[0].func), ())
@@ -166,9 +170,9 @@ class CalledFunctions:
         if isinstance(argument, ast.Constant | ast.JoinedStr | ast.Lambda):
             return _kind_of_value(argument)
         name = dotted(argument)
-        methods = list_methods(owner) if owner is not None else {}
+        methods = list_methods(owner) if owner else {}
         method = methods.get(name.removeprefix("self.")) if name.startswith("self.") else None
-        if method is not None and not method.decorator_list and method.name not in self._stored:
+        if method and not method.decorator_list and method.name not in self._stored:
             return "function"
         return "type" if self._is_interface(argument) else None
 
@@ -185,32 +189,21 @@ class CalledFunctions:
 
 def made_in(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, str]]:
     """Yield the variables and attributes that nodes bind, with what their calls make."""
-    for target, calls in _calls_bound(nodes).items():
-        yield from ((target, dotted(call.func)) for call in calls)
+    for target, call in bound_calls(nodes):
+        yield target, dotted(call.func)
 
 
-def _calls_bound(nodes: Iterable[ast.AST]) -> dict[str, list[ast.Call]]:
-    """Return the calls whose results are bound, by the variable or attribute."""
-    made: dict[str, list[ast.Call]] = {}
+def bound_calls(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, ast.Call]]:
+    """Yield the calls whose results are bound, with the variable or attribute."""
     for node in nodes:
         match node:
             case ast.Assign(targets=[ast.Name() | ast.Attribute() as to], value=ast.Call() as call):
-                made.setdefault(dotted(to), []).append(call)
-    return made
-
-
-def count_bound(nodes: Sequence[ast.AST]) -> Counter[str]:
-    """Return how often a variable or an attribute is bound."""
-    bound: Counter[str] = Counter()
-    for node in nodes:
-        if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del):
-            bound[getattr(node, "id", getattr(node, "attr", ""))] += 1
-    return bound
+                yield dotted(to), call
 
 
 def names_in_class(owner: ast.ClassDef) -> set[str]:
     """Return the names that the body of a class binds."""
-    names = set[str]()
+    names = set()
     for node in owner.body:
         if isinstance(node, AnyFunction | ast.ClassDef):
             names.add(node.name)
@@ -226,18 +219,24 @@ def list_methods(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:
 
 def imported_names(nodes: Iterable[ast.AST]) -> dict[str, str]:
     """Return the full names of what imports bind, by the names in the module."""
-    imports: dict[str, str] = {}
+    imports = {}
     for node in nodes:
         match node:
             case ast.Import(names=names):
                 for alias in names:
-                    top = alias.name.partition(".")[0]
+                    top = first_part(alias.name)
                     imports[alias.asname or top] = alias.name if alias.asname else top
             case ast.ImportFrom(module=module, names=names, level=level):
                 for alias in names:  # of the package itself, if dots come first
                     full = f"{'.' * level}{module or ''}.{alias.name}"
                     imports[alias.asname or alias.name] = full
     return imports
+
+
+def name_fully(node: ast.expr, imports: StringsByName) -> str:
+    """Return the full name of what an expression names, by the names that are imported."""
+    first, dot, rest = dotted(node).partition(".")
+    return f"{imports.get(first, first)}{dot}{rest}"
 
 
 def _kind_of_value(value: ast.Constant | ast.JoinedStr | ast.Lambda) -> ArgumentKind | None:

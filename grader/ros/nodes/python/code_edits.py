@@ -3,9 +3,10 @@
 import ast
 from collections.abc import Sequence
 
+from grader.base.grouping import Span
 from grader.base.problems import NO_FIXES, Fix, Fixes
 from grader.base.source import Source
-from grader.ros.python.parse import Position, location_in, make_position
+from grader.ros.python.parse import Position, end_position, location_in, make_position
 
 _PLAIN = (ast.Expr, ast.Assign, ast.AnnAssign, ast.Pass)
 
@@ -16,10 +17,9 @@ class CodeEdits:
     def __init__(self, source: Source) -> None:
         self._source = source
 
-    def span(self, node: ast.expr | ast.stmt | ast.keyword) -> tuple[int, int]:
+    def span(self, node: ast.expr | ast.stmt | ast.keyword) -> Span:
         """Return the offsets at which a node begins and ends."""
-        end = Position(node.end_lineno or node.lineno, (node.end_col_offset or 0) + 1)
-        return self._offset(make_position(node)), self._offset(end)
+        return self._offset(make_position(node)), self._offset(end_position(node))
 
     def _offset(self, position: Position) -> int:
         location = location_in(self._source, position)

@@ -11,18 +11,21 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from pathlib import PurePosixPath
-from typing import Literal, NamedTuple
+from typing import Literal
 
+from grader.base.grouping import StringsByName
 from grader.base.names import closest, near
+from grader.base.patterns import on_use
 from grader.base.problems import NO_FIXES, Fix, Fixes
-from grader.base.source import Location
-from grader.base.text import cut, enumerated
+from grader.base.records import Named
+from grader.base.text import cut, enumerated, first_part, last_part
 from grader.ros.known.package_tables import python_table
 from grader.ros.known.releases import RELEASES, Release
-from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
+from grader.ros.nodes.message_uses import ClassesByLocation, CodePart, certain_nodes, given_argument
 from grader.ros.nodes.node_facts import (
     CodeFault,
     CodeFaults,
+    misnamed_callback,
 )
 from grader.ros.nodes.python.action_faults import (
     RegisteredGoal,
@@ -39,30 +42,39 @@ from grader.ros.nodes.python.callback_parameters import (
 )
 from grader.ros.nodes.python.called_functions import (
     CalledFunctions,
-    count_bound,
     imported_names,
     made_in,
     names_in_class,
 )
 from grader.ros.nodes.python.code_edits import CodeEdits
 from grader.ros.nodes.python.log_calls import wrong_log_calls
+from grader.ros.nodes.python.message_content import silent_synchronisers
 from grader.ros.nodes.python.node_constructors import early_uses
-from grader.ros.nodes.python.python_calls import WrongCall
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
-from grader.ros.nodes.python.transform_buffers import buffers_without_listener
+from grader.ros.nodes.python.standing_calls import (
+    missing_members,
+    repeated_calls,
+    uncalled_functions,
+)
+from grader.ros.nodes.python.transform_buffers import (
+    buffers_without_listener,
+    unregistered_transforms,
+)
 from grader.ros.nodes.python.undefined_names import undefined_names, wrong_imports
 from grader.ros.python.bindings import bound_names
-from grader.ros.python.constants import binds_unseen, constant_in, dotted, last_name
-from grader.ros.python.parse import AnyFunction, Code, every_node, make_position
+from grader.ros.python.constants import binds_unseen, constant_in, count_bound, dotted, last_name
+from grader.ros.python.parse import AnyFunction, Code, make_position
 from grader.ros.python.values import QualifiedName
 from grader.ros.python.walking import children, walk
+
+_Names = Collection[str]
 
 # With one of these, callbacks may run while another one waits.
 _OTHER_THREADS = ("xecutor", "hread", "spin_once", "spin_some", "asyncio", "await ")
 _MAX_FAULTS = 20  # of one module and rule
 _MAX_SHOWN = 40  # characters of an expression
 _ANSWERING = ("create_service", "ActionServer")
-_INTERFACE = re.compile(r"\w+\.(?:msg|srv|action)\.[A-Z]\w*+")
+_INTERFACE = on_use(r"\w+\.(?:msg|srv|action)\.[A-Z]\w*+")
 _SPINNING = "rclpy.spin_until_future_complete"
 # Names of groups and executors with which a callback may wait for another one.
 _CONCURRENT = ("MultiThreadedExecutor", "ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup")
@@ -92,7 +104,12 @@ _OTHER_CALLBACKS = ("TransformListener", "message_filters", "add_done_callback")
 _PAUSES = frozenset({"time.sleep", "sleep", "rate.sleep", "self.rate.sleep"})
 
 
-class ModuleText(NamedTuple):
+# Words of modules that register what helpers of nodes need; packages of tf2 that do not.
+_HELPERS = {"TransformRegistration": "conversions", "registerCallback": "callbacks"}
+_WITHOUT_CONVERSIONS = frozenset({"tf2_ros", "tf2_py", "tf2_msgs"})
+
+
+class ModuleText(Named):
     """A module of which faults are searched: its full name, its code and its parts.
 
     `imports` are the full names of what it imports.
@@ -101,9 +118,9 @@ class ModuleText(NamedTuple):
     name: str
     code: Code
     parts: Sequence[CodePart]
-    imports: Collection[str]
-    nodes: Mapping[Location, ast.ClassDef]  # the classes whose only bases are those of rclpy
-    classes: Mapping[Location, ast.ClassDef]  # all of them
+    imports: _Names
+    nodes: ClassesByLocation  # the classes whose only bases are those of rclpy
+    classes: ClassesByLocation  # all of them
 
     @property
     def is_script(self) -> bool:
@@ -116,28 +133,40 @@ class ModuleText(NamedTuple):
         return f'"{PurePosixPath(self.code.source.path).stem}"'
 
 
-class _PackageAttributes(NamedTuple):
+_Modules = Mapping[str, ModuleText]
+
+
+class _PackageAttributes(Named):
     """The attributes that modules of a package set, and the texts in them.
 
     hasattr() or getattr() may ask for the texts. The attributes are not all of them if names may
     be bound in ways that are not seen.
     """
 
-    stored: Collection[str]
-    texts: Collection[str]
+    stored: _Names
+    texts: _Names
+    named: set[str]  # names that code reads
     may_be_more: bool
     # Whether all that the modules import is of the package, or known to have no nodes of its own.
     is_closed: bool
+    helpers: _Names  # conversions of messages, and callbacks of filters: what there is
 
 
 def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
     """Return the attributes of the modules of a package."""
-    stored, texts, increased = set[str](), set[str](), set[ast.AST]()
-    may_be_more, imported, packages = False, set[str](), set[str]()
+    stored = set()
+    texts = set()
+    named = set()
+    increased = set()
+    may_be_more = False
+    imported = set[str]()
+    packages = set()
+    helpers = set[str]()
     for module in modules:
+        helpers.update(kind for word, kind in _HELPERS.items() if word in module.code.text)
         imported.update(module.imports)
-        packages.add(module.name.partition(".")[0])
-        nodes = every_node(module.code.tree)
+        packages.add(first_part(module.name))
+        nodes = module.code.nodes
         plain_nodes = {*module.nodes.values()}
         may_be_more = may_be_more or binds_unseen(nodes)
         for node in nodes:
@@ -148,16 +177,20 @@ def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
                     stored.add(name)
                 case ast.Constant(value=str(text)):
                     texts.add(text)
+                case ast.Name(id=name, ctx=ast.Load()) | ast.Attribute(attr=name):
+                    named.add(name)
                 case ast.ClassDef(bases=[_, *_]) if node not in plain_nodes:
                     # it may define what a class asks for that it is derived from
                     stored.update(names_in_class(node))
-    is_closed = all(is_passive(name) or name.partition(".")[0] in packages for name in imported)
-    return _PackageAttributes(stored, texts, may_be_more, is_closed)
+    is_closed = all(is_passive(name) or first_part(name) in packages for name in imported)
+    tops = {first_part(name) for name in imported} - _WITHOUT_CONVERSIONS
+    helpers.update("conversions" for top in tops if top.startswith("tf2_"))
+    return _PackageAttributes(stored, texts, named, may_be_more, is_closed, helpers)
 
 
 def code_faults(
     module: ModuleText,
-    others: Mapping[str, ModuleText],
+    others: _Modules,
     attributes: _PackageAttributes,
     releases: Sequence[Release],
 ) -> CodeFaults:
@@ -176,10 +209,16 @@ def code_faults(
     yield from search.wrong_parameters()
     yield from search.without_response()
     yield from search.waiting_callbacks()
+    yield from search.misnamed_callbacks()
     yield from search.of_programs()
     yield from _early_uses(module, others, attributes)
     yield from _wrong_calls(module, others, releases or RELEASES)
     yield from wrong_log_calls(module.code, module.parts)
+    imports = imported_names(module.code.nodes)
+    yield from missing_members(module.code, module.parts, imports)
+    yield from uncalled_functions(module.code, module.parts, module.nodes, imports)
+    yield from repeated_calls(module.code, module.nodes.values())
+    yield from search.of_helpers(imports)
     yield from search.of_actions()
 
 
@@ -188,7 +227,8 @@ def said_faults(faults: Iterable[CodeFault]) -> CodeFaults:
 
     They have the fixes of which it is certain what they write.
     """
-    said, counts = set[str](), Counter[str]()
+    said = set()
+    counts = Counter[str]()
     for fault in faults:
         if fault.rule == "name-binding" and fault.message in said:
             continue
@@ -202,15 +242,15 @@ def _certain_fixes(fault: CodeFault) -> list[Fix]:
     return [fix for fix in fault.fixes if fix.is_certain]
 
 
-def _early_uses(
-    module: ModuleText, others: Mapping[str, ModuleText], attributes: _PackageAttributes
-) -> CodeFaults:
+def _early_uses(module: ModuleText, others: _Modules, attributes: _PackageAttributes) -> CodeFaults:
     """Yield what constructors of nodes use before the node is made, or without that."""
     bases = set[str]()
     for other in others.values():
         for owner in other.classes.values():
             bases.update(map(last_name, owner.bases))
-    code, name, spun = module.code, module.node_name, _find_spun(module)
+    code = module.code
+    name = module.node_name
+    spun = _find_spun(module)
     for owner in module.nodes.values() if not attributes.may_be_more else ():
         if len(owner.bases) == 1 and not owner.keywords:
             yield from early_uses(code, owner, name, attributes.stored, bases, spun)
@@ -218,7 +258,7 @@ def _early_uses(
 
 def _find_spun(module: ModuleText) -> set[str]:
     """Return the classes of the nodes that functions of a module make and spin."""
-    spun = set[str]()
+    spun = set()
     for part in module.parts:
         made = dict(made_in(walk(part.node)))
         for call in part.calls:
@@ -229,26 +269,24 @@ def _find_spun(module: ModuleText) -> set[str]:
     return spun
 
 
-def _wrong_calls(
-    module: ModuleText, others: Mapping[str, ModuleText], releases: Sequence[Release]
-) -> CodeFaults:
+def _wrong_calls(module: ModuleText, others: _Modules, releases: Sequence[Release]) -> CodeFaults:
     """Yield the calls of rclpy and tf2_ros whose arguments Python cannot bind."""
-    nodes = every_node(module.code.tree)
+    nodes = module.code.nodes
     if binds_unseen(nodes):
         return
     functions = CalledFunctions(module.code, nodes, module.nodes.values(), releases)
     classes = {*NODE_CLASSES}
     for other in others.values():
         classes.update(f"{other.name}.{node.name}" for node in other.nodes.values())
-    package = module.name.partition(".")[0]
+    package = first_part(module.name)
     for part in module.parts:
-        owner = module.nodes.get(part.of) if part.of is not None else None
+        owner = module.nodes.get(part.of) if part.of else None
         kind_in_part = partial(_kind_in_part, package, classes, part, _other_names(part.node))
         filled = _find_filled(module, part)
-        wrong = dict[ast.Call, WrongCall]()
+        wrong = {}
         for call in part.calls:
             wrong_call = functions.wrong_call(call, owner, filled, kind_in_part)
-            if wrong_call is not None:
+            if wrong_call:
                 wrong[call] = wrong_call
         certain = set(certain_nodes(part.node)) if wrong else set[ast.AST]()
         for call in sorted(wrong.keys() & certain, key=make_position):
@@ -270,7 +308,8 @@ def _find_filled(module: ModuleText, part: CodePart) -> dict[str, str]:
 
 def _other_names(function: ast.AST) -> Mapping[str, ast.expr]:
     """Return the variables that a function binds once, to what has a name already."""
-    counts, values = Counter[str](), dict[str, ast.expr]()
+    counts = Counter[str]()
+    values = {}
     for node in walk(function):
         match node:
             case ast.Assign(
@@ -283,7 +322,7 @@ def _other_names(function: ast.AST) -> Mapping[str, ast.expr]:
 
 def _kind_in_part(
     package: str,
-    classes: Collection[str],
+    classes: _Names,
     part: CodePart,
     others: Mapping[str, ast.expr],
     node: ast.expr,
@@ -299,11 +338,11 @@ def _kind_in_part(
     name = f"{value.name}{dot}{rest}"
     if name in classes:
         return "node class"
-    is_own = name.partition(".")[0] == package
+    is_own = first_part(name) == package
     return "type" if _INTERFACE.fullmatch(name) and not is_own else None
 
 
-class _Registered(NamedTuple):
+class _Registered(Named):
     """A function that is given as a callback: the call that is given it, and what it is given."""
 
     by: str  # create_timer
@@ -318,19 +357,22 @@ class _Search:
     def __init__(
         self,
         module: ModuleText,
-        others: Mapping[str, ModuleText],
+        others: _Modules,
         attributes: _PackageAttributes,
     ) -> None:
-        self._module, self._others, self._attributes = module, others, attributes
+        self._module = module
+        self._others = others
+        self._attributes = attributes
         self._edits = CodeEdits(module.code.source)
         self._callbacks = CallbackFunctions(module.code, module.classes, attributes.stored)
-        self._code, self._at = module.code, module.code.at
+        self._code = module.code
+        self._at = module.code.at
         self._functions = {
             (part.of, part.name): part.node
             for part in module.parts
             if not isinstance(part.node, ast.Module)
         }
-        self._registered = [*self._find_registered()]
+        self._registered = list(self._find_registered())
 
     def _find_registered(self) -> Iterator[_Registered]:
         for part in self._module.parts:
@@ -338,7 +380,7 @@ class _Search:
                 name = last_name(call.func)
                 if name in CALLBACKS:
                     given = given_argument(call, *CALLBACKS[name])
-                    if given is not None:
+                    if given:
                         yield _Registered(name, call, given, part)
 
     def _find(self, node: ast.expr, part: CodePart) -> AnyFunction | None:
@@ -351,24 +393,66 @@ class _Search:
         attributes = self._attributes
         if attributes.may_be_more:
             return
-        known, asked = {*python_table().node_attributes, *attributes.stored}, {*attributes.texts}
+        known = {*python_table().node_attributes, *attributes.stored}
+        # A class that its package does not name is the base of one in another package.
+        closed = attributes.named - self._extended()
+        asked = {*attributes.texts}
+        if {*self._code.releases} == {"foxy"}:
+            known |= python_table().of_foxy
         for part in self._module.parts:
-            owner = self._module.nodes.get(part.of) if part.of is not None else None
-            if owner is not None and not owner.decorator_list and not owner.keywords:
-                yield from self._undefined_in(part, owner, known, asked)
+            for variable, owner in self._list_own_nodes(part):
+                is_plain = not owner.decorator_list and not owner.keywords
+                if is_plain and owner.name in closed:
+                    yield from self._undefined_in(part, variable, owner, known, asked)
+
+    def _extended(self) -> set[str]:
+        """Return the classes of nodes that another package is given, which may set attributes."""
+        names = set[str]()
+        if self._attributes.is_closed:
+            return names
+        package = first_part(self._module.name)
+        imports = imported_names(self._code.nodes)
+        for part in self._module.parts:
+            given = set[str]()
+            for call in part.calls:
+                source = imports.get(first_part(dotted(call.func)), "")
+                if first_part(source) not in ("", package) and not is_passive(source):
+                    given.update(map(dotted, call.args))
+                    given.update(dotted(keyword.value) for keyword in call.keywords)
+            own_nodes = self._list_own_nodes(part)
+            names.update(owner.name for variable, owner in own_nodes if variable in given)
+        return names
+
+    def _list_own_nodes(self, part: CodePart) -> Iterator[tuple[str, ast.ClassDef]]:
+        """Yield the variables of a function that are own nodes, as self, with their classes."""
+        if part.of:
+            if part.of in self._module.nodes:
+                yield "self", self._module.nodes[part.of]
+            return
+        by_name = {owner.name: owner for owner in self._module.nodes.values()}
+        nodes = walk(part.node)
+        bound = count_bound(nodes)
+        for variable, kind in made_in(nodes):
+            if bound[variable] == 1 and kind in by_name:
+                yield variable, by_name[kind]
 
     def _undefined_in(
-        self, part: CodePart, owner: ast.ClassDef, known: Collection[str], asked: set[str]
+        self,
+        part: CodePart,
+        variable: str,
+        owner: ast.ClassDef,
+        known: _Names,
+        asked: set[str],
     ) -> CodeFaults:
-        """Yield those of a method, wherever they are used."""
+        """Yield those of a variable in a function, wherever they are used."""
         own_names = names_in_class(owner)
-        read: list[ast.Attribute] = []
+        read = []
         for node in certain_nodes(part.node):
             match node:
-                case ast.Attribute(value=ast.Name(id="self"), ctx=ast.Load()):
-                    read.append(node)
-                case ast.AugAssign(target=ast.Attribute(value=ast.Name(id="self")) as target):
-                    read.append(target)
+                case ast.Attribute(ctx=ast.Load()):
+                    read += [node] if dotted(node.value) == variable else []
+                case ast.AugAssign(target=ast.Attribute() as target):
+                    read += [target] if dotted(target.value) == variable else []
         for node in sorted(read, key=make_position):
             name = node.attr
             if name in own_names or name in known or name in asked or name.startswith("_"):
@@ -399,11 +483,11 @@ class _Search:
             if not is_of_rclpy or not isinstance(registered.given, ast.Call):
                 continue
             function = self._find(registered.given.func, registered.part)
-            if function is None:
+            if not function:
                 continue
             name = dotted(registered.given.func)
             least, _ = count_parameters(function, is_method=name.startswith("self."))
-            given = [*registered.given.args, *registered.given.keywords]
+            given = registered.given.args + registered.given.keywords
             are_known = not any(isinstance(each, ast.Starred | ast.keyword) for each in given)
             if are_known and len(given) < least:
                 what = f"calls {name}() without its arguments"
@@ -412,7 +496,8 @@ class _Search:
             else:
                 continue
             message = f"{registered.by}() {what}; write {name} without the parentheses"
-            at, fixes = self._at(registered.given), NO_FIXES
+            at = self._at(registered.given)
+            fixes = NO_FIXES
             if not given:
                 fixes = self._edits.rewrite(*self._edits.span(registered.given), name)
             yield CodeFault("callback-call", message, at, fixes=fixes)
@@ -453,10 +538,10 @@ class _Search:
 
     def without_response(self) -> CodeFaults:
         """Yield callbacks of services and actions that return nothing."""
-        said = set[ast.AST]()
+        said = set()
         for registered in self._registered:
             function = self._callback(registered)
-            if registered.by not in _ANSWERING or function is None or function in said:
+            if registered.by not in _ANSWERING or not function or function in said:
                 continue
             said.add(function)
             if function.decorator_list or _is_generator(function):
@@ -478,7 +563,7 @@ class _Search:
     def _wrong_responses(self, function: AnyFunction, registered: _Registered) -> CodeFaults:
         """Yield where the callback of a service certainly returns something else."""
         for statement in _own_statements(function.body):
-            if not isinstance(statement, ast.Return) or statement.value is None:
+            if not isinstance(statement, ast.Return) or not statement.value:
                 continue
             written = _no_response(statement.value, function)
             if written:
@@ -486,7 +571,8 @@ class _Search:
                     f"{function.name}() returns {written} in place of its response, which rclpy "
                     "refuses with a TypeError"
                 )
-                at, related = self._at(statement), self._at(registered.call)
+                at = self._at(statement)
+                related = self._at(registered.call)
                 yield CodeFault("service-response", message, at, related)
 
     def waiting_callbacks(self) -> CodeFaults:
@@ -501,15 +587,15 @@ class _Search:
         for function in self._reached():
             for call in _calls_in(function):
                 yield from self._waiting(call, function.name, clients, rates)
-            yield from self._sleeping(function)
-            yield from self._loops(function)
+            loops = list(self._loops(function))
+            yield from loops or self._sleeping(function)
 
     def _made_by(self, method: str) -> list[str]:
         """Return the variables and attributes that are bound to what a method of a node makes."""
         return [
             dotted(node.targets[0])
             for part in self._module.parts
-            if part.of is not None
+            if part.of
             for node in walk(part.node)
             if isinstance(node, ast.Assign)
             and isinstance(node.value, ast.Call)
@@ -519,12 +605,18 @@ class _Search:
 
     def _only_bound(self, made: Sequence[str]) -> set[str]:
         """Return those of some names that the module binds to nothing else."""
-        bound = count_bound(every_node(self._code.tree) if made else ())
-        return {name for name in made if bound[name.rpartition(".")[2]] == made.count(name)}
+        bound = count_bound(self._code.nodes if made else ())
+        return {name for name in made if bound[last_part(name)] == made.count(name)}
 
     def _loops(self, function: AnyFunction) -> CodeFaults:
         """Yield the loops of a callback that do nothing until another callback has run."""
         for node in walk(function):
+            if isinstance(node, ast.While) and _never_ends(node) and function.name != "main":
+                message = (
+                    f"the loop in the callback {function.name}() never ends, so no other "
+                    "callback runs: use a timer"
+                )
+                yield CodeFault("callback-wait", message, self._at(node), is_certain=False)
             if not isinstance(node, ast.While) or not _only_waits(node.body):
                 continue
             awaited = _awaited(node.test)
@@ -535,15 +627,15 @@ class _Search:
                 )
                 yield CodeFault("callback-wait", message, self._at(node), is_certain=False)
 
-    def _are_set_elsewhere(self, names: Collection[str], function: AnyFunction) -> bool:
+    def _are_set_elsewhere(self, names: _Names, function: AnyFunction) -> bool:
         """Return whether only other functions set what a function waits for.
 
         What another library is given may set it in a thread of its own.
         """
         inside = {*walk(function), *self._given_away()}
-        attributes = {name.rpartition(".")[2] for name in names}
+        attributes = {last_part(name) for name in names}
         places: dict[str, list[bool]] = {name: [] for name in names}
-        for node in every_node(self._code.tree):
+        for node in self._code.nodes:
             if not isinstance(node, ast.Attribute) or not isinstance(node.ctx, ast.Store):
                 continue
             if dotted(node) in places:
@@ -557,16 +649,16 @@ class _Search:
 
         These are those that it is given, that are decorated, and that these call; also lambdas.
         """
-        passed: set[ast.AST] = {each.given for each in self._registered}
+        passed = {each.given for each in self._registered}
         functions: dict[str, list[ast.AST]] = {}
         given = list[ast.AST]()
-        for node in every_node(self._code.tree):
+        for node in self._code.nodes:
             if isinstance(node, AnyFunction):
                 functions.setdefault(node.name, []).append(node)
                 given += [node] if node.decorator_list else []
             elif isinstance(node, ast.Call):
                 passed.add(node.func)
-        for node in every_node(self._code.tree):
+        for node in self._code.nodes:
             if node in passed:
                 continue
             if isinstance(node, ast.Lambda):
@@ -577,9 +669,12 @@ class _Search:
 
     def _sleeping(self, function: AnyFunction) -> CodeFaults:
         """Yield where a callback first sleeps, in a module with another callback."""
-        text = self._code.source.text
+        text = self._code.text
         has_others = len(self._registered) > 1 or any(word in text for word in _OTHER_CALLBACKS)
         calls = [call for call in _calls_in(function) if dotted(call.func) == "time.sleep"]
+        loops = [node for node in walk(function) if isinstance(node, ast.While | ast.For)]
+        in_loops = {node for loop in loops for node in walk(loop)}
+        has_others = has_others or not in_loops.isdisjoint(calls)
         if not has_others or not calls or "time" not in self._module.imports:
             return
         at = self._at(min(calls, key=make_position))
@@ -588,40 +683,38 @@ class _Search:
         )
         yield CodeFault("callback-sleep", message, at, is_certain=False)
 
-    def _waiting(
-        self, call: ast.Call, name: str, clients: Collection[str], rates: Collection[str]
-    ) -> CodeFaults:
+    def _waiting(self, call: ast.Call, name: str, clients: _Names, rates: _Names) -> CodeFaults:
         called = dotted(call.func)
         owner, _, method = called.rpartition(".")
         if any(keyword.arg == "timeout_sec" for keyword in call.keywords) or len(call.args) > 2:
             return
+        message = ""
         if method == "call" and owner in clients:
             message = (
                 f"{called}() in the callback {name}() waits for ever: the answer is only read "
                 "when the callback has ended; use call_async()"
             )
-            yield CodeFault("callback-wait", message, self._at(call))
         elif method == "sleep" and owner in rates:
             message = (
                 f"{called}() in the callback {name}() waits for ever: the timer of a rate only "
                 "runs when the callback has ended"
             )
-            yield CodeFault("callback-wait", message, self._at(call))
-        elif called == _SPINNING and [*map(dotted, call.args[:1])] == ["self"]:
+        elif called == _SPINNING and list(map(dotted, call.args[:1])) == ["self"]:
             message = (
                 f"spin_until_future_complete() in the callback {name}() waits for ever: the "
                 "answer is only read when the callback has ended; use add_done_callback()"
             )
+        if message:
             yield CodeFault("callback-wait", message, self._at(call))
 
     def _reached(self) -> Iterator[AnyFunction]:
         """Yield the callbacks of timers, subscriptions and services, and own methods they call."""
-        seen = set[ast.AST]()
+        seen = set()
         pending = [registered for registered in self._registered if registered.by != "ActionServer"]
         reached = [(self._callback(registered), registered.part) for registered in pending]
         while reached:
             function, part = reached.pop(0)
-            if function is None or function in seen:
+            if not function or function in seen:
                 continue
             seen.add(function)
             yield function
@@ -635,11 +728,11 @@ class _Search:
         It is this module, one that it imports or one that imports it.
         """
         for module in self._related_modules():
-            text = module.code.source.text
+            text = module.code.text
             if any(word in text for word in _CONCURRENT):
                 return True
             if not _CONCURRENT_MODULES.isdisjoint(
-                imported.partition(".")[0] for imported in module.imports
+                first_part(imported) for imported in module.imports
             ):
                 return True
         return False
@@ -660,7 +753,8 @@ class _Search:
 
     def of_actions(self) -> CodeFaults:
         """Yield what is done wrong with actions and transforms."""
-        goals, answering = list[RegisteredGoal](), list[RegisteredGoal]()
+        goals = []
+        answering = []
         servers = [each for each in self._registered if each.by == "ActionServer"]
         for server in servers:
             goals += self._find_goals(server, server.given)
@@ -670,26 +764,55 @@ class _Search:
             )
         yield from goals_without_state(self._code, goals)
         yield from rejected_goals(self._code, answering)
-        text = self._code.source.text
+        text = self._code.text
         if goals and "lookup_transform" in text and not self._may_have_threads():
             yield from loops_without_transforms(self._code, goals, self._functions)
         if "get_result_async" in text:
             yield from answers_for_results(self._code, self._module.parts, self._functions)
-        if "Buffer" in text and "TransformListener" not in text:
-            names = imported_names(every_node(self._code.tree))
-            yield from buffers_without_listener(self._code, names)
+
+    def of_helpers(self, imports: StringsByName) -> CodeFaults:
+        """Yield what is wrong with buffers of transforms and synchronisers.
+
+        `imports` has the full names of what the module imports.
+        """
+        code = self._code
+        parts = self._module.parts
+        helpers = self._attributes.helpers
+        if "Buffer" in code.text and "TransformListener" not in code.text:
+            yield from buffers_without_listener(code, imports)
+        if "Buffer" in code.text and "conversions" not in helpers:
+            yield from unregistered_transforms(code, parts, imports)
+        if "Synchronizer" in code.text and "callbacks" not in helpers:
+            yield from silent_synchronisers(code, parts, imports)
 
     def _find_goals(self, server: _Registered, given: ast.expr | None) -> list[RegisteredGoal]:
         """Return the function that an action server is given; nothing where it is not known."""
-        function = self._callback(server._replace(given=given)) if given is not None else None
-        return [RegisteredGoal(function, server.call)] if function is not None else []
+        function = self._callback(server._replace(given=given)) if given else None
+        return [RegisteredGoal(function, server.call)] if function else []
 
     def _may_have_threads(self) -> bool:
         """Return whether anything but rclpy.spin() may run callbacks."""
-        texts = [module.code.source.text for module in self._related_modules()]
+        texts = [module.code.text for module in self._related_modules()]
         if not any("rclpy.spin(" in text for text in texts):
             return True
         return any(word in text for text in texts for word in _OTHER_THREADS)
+
+    def misnamed_callbacks(self) -> CodeFaults:
+        """Yield methods that override no callback of a node's lifecycle, and that nothing names."""
+        for owner in self._module.nodes.values():
+            if list(map(last_name, owner.bases)) != ["LifecycleNode"]:
+                continue
+            for method in owner.body:
+                if isinstance(method, ast.FunctionDef) and self._is_state_method(method):
+                    defined = names_in_class(owner)
+                    fault = misnamed_callback(method.name, defined, self._at(method))
+                    yield from [] if not fault else [fault]
+
+    def _is_state_method(self, method: ast.FunctionDef) -> bool:
+        """Return whether a method takes one argument, and nothing names it."""
+        is_named = _count_names([self._module])[method.name] > 0
+        is_plain = not method.decorator_list and len(method.args.args) == 2
+        return is_plain and not is_named and method.name not in self._attributes.texts
 
     # --- Programs
 
@@ -702,14 +825,15 @@ class _Search:
         if reached is None:
             return
         names = _count_names(reached)
-        calls = [call for part in self._module.parts if part.of is None for call in part.calls]
+        calls = [call for part in self._module.parts if not part.of for call in part.calls]
         by_name = {dotted(call.func): call for call in reversed(calls)}
-        init, spin = by_name.get("rclpy.init"), by_name.get("rclpy.spin")
-        if spin is None and "rclpy.executors" in self._code.source.text:
+        init = by_name.get("rclpy.init")
+        spin = by_name.get("rclpy.spin")
+        if not spin and "rclpy.executors" in self._code.text:
             spin = next((call for call in calls if last_name(call.func) == "add_node"), None)
-        if init is not None and self._registered:
+        if init and self._registered:
             yield from self._unspun(init, reached)
-        if spin is not None and not self._is_initialised(names):
+        if spin and not self._is_initialised(names):
             message = "rclpy.init() is missing, so rclpy makes no node"
             [part] = [part for part in self._module.parts if spin in part.calls]
             fixes = self._edits.add_first(part.node.body, "rclpy.init()")
@@ -718,7 +842,7 @@ class _Search:
     def _unspun(self, init: ast.Call, reached: Sequence[ModuleText]) -> CodeFaults:
         """Yield that nothing spins a node with callbacks, or that it is spun once."""
         # A TransformListener can spin the node in a thread.
-        if any("spin_thread" in module.code.source.text for module in reached):
+        if any("spin_thread" in module.code.text for module in reached):
             return
         if _may_spin(reached):
             yield from self._spun_once(reached)
@@ -727,17 +851,18 @@ class _Search:
                 "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
             )
             is_certain = not self._may_work_in_loops(reached)
-            at, fixes = self._at(init), self._spin()
+            at = self._at(init)
+            fixes = self._spin()
             yield CodeFault("node-spins", message, at, None, is_certain, fixes)
 
     def _spin(self) -> Fixes:
         """Return the fix that spins the node of the only statement that makes one."""
         classes = {node.name for node in self._module.nodes.values()}
-        calls = list[ast.Call]()
-        statements = dict[ast.expr, ast.Expr | ast.Assign]()
+        calls = []
+        statements = {}
         for part in self._module.parts:
             calls += [call for call in part.calls if dotted(call.func) in classes]
-            for node in walk(part.node) if part.of is None and part.name else ():
+            for node in walk(part.node) if not part.of and part.name else ():
                 if isinstance(node, ast.Expr | ast.Assign):
                     statements[node.value] = node
         statement = statements.get(calls[0]) if len(calls) == 1 else None
@@ -746,13 +871,14 @@ class _Search:
                 return self._edits.add_behind(statement, f"rclpy.spin({name})")
             case ast.Expr(value=call):
                 start, end = self._edits.span(call)
-                made = self._code.source.text[start:end]
+                made = self._code.text[start:end]
                 return self._edits.rewrite(start, end, f"rclpy.spin({made})")
         return NO_FIXES
 
     def uncalled_main(self) -> CodeFaults:
         """Yield that a file that is a program defines main(), and calls nothing."""
-        tree, text = self._code.tree, self._code.source.text
+        tree = self._code.tree
+        text = self._code.text
         main = next((node for node in tree.body if getattr(node, "name", "") == "main"), None)
         if not isinstance(main, ast.FunctionDef) or not self._module.is_script:
             return
@@ -770,20 +896,21 @@ class _Search:
         Neither a condition decides about the callback, nor about the node.
         """
         conditional = calls_in_branches(self._code.tree)
-        called, made = {"", "main", "__init__"}, set[str]()
+        called = {"", "main", "__init__"}
+        made = set()
         for part in self._module.parts:
             names = {last_name(call.func) for call in part.calls if call not in conditional}
             called |= names
             if init in part.calls:
                 called.add(part.name)
-            if part.of is None:
+            if not part.of:
                 made |= names
-        for node in reversed([*self._module.classes.values()]):  # which are below their bases
+        for node in reversed(list(self._module.classes.values())):  # which are below their bases
             if node.name in made:
                 made.update(last_name(base) for base in node.bases)
         for registered in self._registered:
             of = registered.part.of
-            is_made = of is None or self._module.classes[of].name in made
+            is_made = not of or self._module.classes[of].name in made
             if is_made and registered.call not in conditional and registered.part.name in called:
                 return True
         return False
@@ -795,10 +922,10 @@ class _Search:
         else runs beside it.
         """
         unreached = self._nodes_in_callbacks()
-        imported = {name.partition(".")[0] for module in modules for name in module.imports}
+        imported = {first_part(name) for module in modules for name in module.imports}
         has_others = not _BESIDE.isdisjoint(imported)
         for module in modules:
-            for node in every_node(module.code.tree):
+            for node in module.code.nodes:
                 if not isinstance(node, ast.While) or node in unreached:
                     continue
                 if has_others or not _only_waits(node.body) or not _is_plain_test(node.test):
@@ -808,10 +935,10 @@ class _Search:
     def _nodes_in_callbacks(self) -> set[ast.AST]:
         """Return what is in functions that the code only gives as callbacks."""
         named = _count_names(self._others.values())
-        inside = set[ast.AST]()
+        inside = set()
         for registered in self._registered:
             function = self._callback(registered)
-            if function is not None and named[function.name] == 1:
+            if function and named[function.name] == 1:
                 inside.update(walk(function))
         return inside
 
@@ -847,23 +974,20 @@ class _Search:
         """
         named = _count_names([self._module])
         in_loops = {
-            node
-            for loop in every_node(self._code.tree)
-            if isinstance(loop, _LOOPS)
-            for node in walk(loop)
+            node for loop in self._code.nodes if isinstance(loop, _LOOPS) for node in walk(loop)
         }
         [body] = [part for part in self._module.parts if isinstance(part.node, ast.Module)]
         called = Counter(dotted(call.func) for call in body.calls if call not in in_loops)
         for part in self._module.parts:
             node = part.node
             if isinstance(node, ast.Module):
-                calls = [*body.calls]
+                calls = list(body.calls)
             elif (
-                part.of is None
+                not part.of
                 and not node.decorator_list
                 and (named[part.name] == called[part.name] <= 1)
             ):
-                calls = [*_calls_in(node)]
+                calls = list(_calls_in(node))
             else:
                 continue
             yield from (call for call in calls if call not in in_loops)
@@ -875,9 +999,9 @@ class _Search:
         owners = {registered.part.of for registered in self._registered}
         return len(sure) > 1 and len(owners) == 1
 
-    def _is_initialised(self, names: Collection[str]) -> bool:
+    def _is_initialised(self, names: _Names) -> bool:
         """Return whether the module, or one that imports it, may initialise rclpy."""
-        if "init" in names or "context" in self._code.source.text.lower():
+        if "init" in names or "context" in self._code.text.lower():
             return True
         return self._is_imported()
 
@@ -892,13 +1016,13 @@ class _Search:
         while pending:
             for full in pending.pop().imports:
                 own_module = self._others.get(full) or self._others.get(full.rpartition(".")[0])
-                if own_module is None:
+                if not own_module:
                     if not is_passive(full):
                         return None
                 elif own_module.name not in reached:
                     reached[own_module.name] = own_module
                     pending.append(own_module)
-        return [*reached.values()]
+        return list(reached.values())
 
 
 def _acts(statement: ast.stmt) -> bool:
@@ -924,8 +1048,8 @@ def _with_callees(
     given: Iterable[ast.AST], functions: Mapping[str, Sequence[ast.AST]]
 ) -> set[ast.AST]:
     """Return the nodes in functions, and in those that they call by their names."""
-    inside = set[ast.AST]()
-    pending = [*given]
+    inside = set()
+    pending = list(given)
     while pending:
         function = pending.pop()
         if function in inside:
@@ -951,7 +1075,7 @@ def _calls_in(function: ast.AST) -> Iterator[ast.Call]:
 
 def _own_statements(body: Sequence[ast.stmt]) -> Iterator[ast.stmt]:
     """Yield the statements of a function, also in blocks, without those of functions in it."""
-    pending: list[ast.AST] = [*reversed(body)]
+    pending: list[ast.AST] = list(reversed(body))
     while pending:
         node = pending.pop()
         if isinstance(node, ast.stmt):
@@ -1016,16 +1140,13 @@ def _ends_without_value(
     Each comes with whether it certainly gets there on some path.
     """
     for statement in _own_statements(function.body):
-        if isinstance(statement, ast.Return) and _is_none(statement.value):
-            yield statement, True
-            return
+        match statement:
+            case ast.Return(value=None | ast.Constant(value=None)):
+                yield statement, True
+                return
     end = _falls_off(function.body)
     if end != "no":
         yield function, end == "yes"
-
-
-def _is_none(node: ast.expr | None) -> bool:
-    return node is None or (isinstance(node, ast.Constant) and node.value is None)
 
 
 def _falls_off(body: Sequence[ast.stmt]) -> str:
@@ -1082,7 +1203,7 @@ def _count_names(modules: Iterable[ModuleText]) -> Counter[str]:
     """Return how often names and attributes are written in modules."""
     names = Counter[str]()
     for module in modules:
-        for node in every_node(module.code.tree):
+        for node in module.code.nodes:
             names[getattr(node, "attr", "") or getattr(node, "id", "")] += 1
     return names
 
@@ -1097,11 +1218,24 @@ def _may_spin(modules: Sequence[ModuleText]) -> bool:
     """Return whether functions that modules call may spin a node."""
     names = {*_count_names(modules)}
     for module in modules:
-        names.update(name.rpartition(".")[2] for name in module.imports)
-        for node in every_node(module.code.tree):
+        names.update(last_part(name) for name in module.imports)
+        for node in module.code.nodes:
             if isinstance(node, ast.Constant) and isinstance(node.value, str):
                 names.add(node.value)  # which getattr() may be given
     return not _SPINS.isdisjoint(names)
+
+
+def _never_ends(loop: ast.While) -> bool:
+    """Return whether nothing in a loop leaves it, as long as rclpy runs."""
+    is_endless = isinstance(loop.test, ast.Constant) and bool(loop.test.value)
+    if not is_endless and ast.unparse(loop.test) != "rclpy.ok()":
+        return False
+    leaving = (ast.Break, ast.Return, ast.Raise, ast.Yield, ast.YieldFrom, ast.Await)
+    if any(isinstance(node, leaving) for node in walk(loop)):
+        return False
+    return not any(
+        "spin" in dotted(call.func) or dotted(call.func) in _ENDING for call in _calls_in(loop)
+    )
 
 
 def _only_waits(body: Sequence[ast.stmt]) -> bool:

@@ -7,35 +7,38 @@ its parameters.
 import ast
 import re
 import sys
-from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple, TypeVar
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import TypeVar
 
-from grader.ros.nodes.node_facts import NamePart
-from grader.ros.python.constants import dotted, make_order
-from grader.ros.python.values import Call, Value
+from grader.base.patterns import on_use
+from grader.base.records import Named
+from grader.ros.nodes.message_uses import Evaluate
+from grader.ros.nodes.node_facts import NamePart, NameParts
+from grader.ros.python.constants import count_stored, dotted, make_order
+from grader.ros.python.values import Call
 from grader.ros.python.walking import walk
+
+_Expressions = Mapping[str, ast.expr]
 
 _MAX_DEPTH = 12  # of names that are bound to expressions with names
 _MAX_ITEMS = 20  # of a list that a loop goes through
 _MAX_PARTS = 20
 _UNKNOWN = NamePart("unknown")
-_FIELD = re.compile(r"\{(\d*)\}|\{\{|\}\}|\{[^{}]*\}")
-_PERCENT = re.compile(r"%([sdi%])|%")
-_OF_NODE: dict[str, NamePart] = {
+_FIELD = on_use(r"\{(\d*)\}|\{\{|\}\}|\{[^{}]*\}")
+_PERCENT = on_use(r"%([sdi%])|%")
+_OF_NODE = {
     "get_name": NamePart("node name"),
     "get_namespace": NamePart("namespace"),
 }
 _METHODS = ("get_parameter", "declare_parameter")
 _VALUES = ("value", "string_value", "string_array_value", "integer_value")
 _PARAMETER_CALLBACKS = ("add_on_set_parameters_callback", "add_post_set_parameters_callback")
-_Parts = tuple[NamePart, ...]
 
 
 _Found = TypeVar("_Found")
 
 
-class _Loop(NamedTuple):
+class _Loop(Named):
     """A loop through a list; its name is not bound to one item outside of these lines."""
 
     items: ast.expr
@@ -43,10 +46,10 @@ class _Loop(NamedTuple):
     last: int
 
 
-class Bindings(NamedTuple):
+class Bindings(Named):
     """What names are bound to once: the expressions, and those of lists that loops go through."""
 
-    values: Mapping[str, ast.expr]
+    values: _Expressions
     loops: Mapping[str, _Loop]
 
     def within(self, inner: "Bindings") -> "Bindings":
@@ -63,7 +66,8 @@ def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
     if of_self:
         later = _nodes_of_parameter_callbacks(ordered)
         ordered = [node for node in ordered if node not in later]
-    values, loops = dict[str, ast.expr](), dict[str, _Loop]()
+    values = {}
+    loops = {}
     for node in ordered:
         match node:
             case (
@@ -74,7 +78,7 @@ def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
             case ast.For() | ast.comprehension():
                 name, loop = _looped(node)
                 loops[name] = loop
-    once = _bound_once(ordered)
+    once = {name for name, count in count_stored(ordered).items() if count == 1}
     if of_self:
         once = {name for name in once if name.startswith("self.")}
     return Bindings(_only(values, once), _only(loops, once))
@@ -82,7 +86,7 @@ def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
 
 def _nodes_of_parameter_callbacks(nodes: Sequence[ast.AST]) -> set[ast.AST]:
     """Return all nodes of the methods that a class is told of set parameters by."""
-    names: set[str] = set()
+    names = set()
     for node in nodes:
         match node:
             case ast.Call(
@@ -90,23 +94,11 @@ def _nodes_of_parameter_callbacks(nodes: Sequence[ast.AST]) -> set[ast.AST]:
                 args=[ast.Attribute(value=ast.Name(id="self"), attr=method), *_],
             ) if registers in _PARAMETER_CALLBACKS:
                 names.add(method)
-    inside: set[ast.AST] = set()
+    inside = set()
     for node in nodes if names else ():
         if isinstance(node, ast.FunctionDef) and node.name in names:
             inside.update(walk(node))
     return inside
-
-
-def _bound_once(nodes: Iterable[ast.AST]) -> set[str]:
-    """Return the names and attributes that are bound once."""
-    counts = Counter[str]()
-    for node in nodes:
-        match node:
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
-                counts[name] += 1
-            case ast.Attribute(ctx=ast.Store() | ast.Del()):
-                counts[dotted(node)] += 1
-    return {name for name, count in counts.items() if count == 1}
 
 
 def _only(constants: Mapping[str, _Found], names: Collection[str]) -> dict[str, _Found]:
@@ -115,12 +107,11 @@ def _only(constants: Mapping[str, _Found], names: Collection[str]) -> dict[str, 
 
 def _looped(node: ast.For | ast.comprehension) -> tuple[str, _Loop]:
     """Return the name that a loop gives each item of a list; of enumerate() that of the item."""
-    first, last = 0, sys.maxsize
+    first = 0
+    last = sys.maxsize
     if isinstance(node, ast.For):
-        first, last = (
-            node.lineno,
-            max(statement.end_lineno or statement.lineno for statement in node.body),
-        )
+        first = node.lineno
+        last = max(statement.end_lineno or statement.lineno for statement in node.body)
     match node.target, node.iter:
         case ast.Tuple(elts=[_, named]), ast.Call(func=ast.Name(id="enumerate"), args=[items]):
             return dotted(named), _Loop(items, first, last)
@@ -130,10 +121,11 @@ def _looped(node: ast.For | ast.comprehension) -> tuple[str, _Loop]:
 class EndpointNames:
     """Reads names in one function."""
 
-    def __init__(self, known: Bindings, evaluate: Callable[[ast.expr], Value]) -> None:
-        self._known, self._evaluate = known, evaluate
+    def __init__(self, known: Bindings, evaluate: Evaluate) -> None:
+        self._known = known
+        self._evaluate = evaluate
 
-    def read(self, node: ast.expr) -> Iterator[_Parts]:
+    def read(self, node: ast.expr) -> Iterator[NameParts]:
         """Yield the parts of a name.
 
         A name in a loop through a list in the code is yielded once for each item.
@@ -141,7 +133,7 @@ class EndpointNames:
         names = {name.id for name in walk(node) if isinstance(name, ast.Name)}
         for name in sorted(names):
             loop = self._loop(name, node)
-            items = self._items(loop.items if loop is not None else None)
+            items = self._items(loop.items if loop else None)
             if items is not None:
                 for item in items[:_MAX_ITEMS]:
                     yield self._joined(self._parts(node, {name: item}))
@@ -151,7 +143,7 @@ class EndpointNames:
     def _loop(self, name: str, node: ast.expr) -> _Loop | None:
         """Return the loop that an expression is in and that binds a name."""
         loop = self._known.loops.get(name)
-        if loop is not None and loop.first <= node.lineno <= loop.last:
+        if loop and loop.first <= node.lineno <= loop.last:
             return loop
         return None
 
@@ -162,14 +154,14 @@ class EndpointNames:
                 case ast.List(elts=items) | ast.Tuple(elts=items):
                     return items
                 case ast.Dict(keys=keys):
-                    return [key for key in keys if key is not None]
+                    return [key for key in keys if key]
                 case ast.Name() | ast.Attribute():
                     node = self._known.values.get(dotted(node))
                 case _:
                     return None
         return None
 
-    def _joined(self, parts: Iterable[NamePart]) -> _Parts:
+    def _joined(self, parts: Iterable[NamePart]) -> NameParts:
         """Return parts, of which no two texts follow each other."""
         joined: list[NamePart] = []
         for part in parts:
@@ -181,9 +173,7 @@ class EndpointNames:
                 joined[-1] = _UNKNOWN
         return tuple(joined)
 
-    def _parts(
-        self, node: ast.expr, items: Mapping[str, ast.expr], depth: int = 0
-    ) -> Iterator[NamePart]:
+    def _parts(self, node: ast.expr, items: _Expressions, depth: int = 0) -> Iterator[NamePart]:
         """Yield the parts of an expression; `items` are what the names of loops are."""
         value = self._evaluate(node)
         if isinstance(value, str | int) and not isinstance(value, bool):
@@ -212,17 +202,17 @@ class EndpointNames:
                 yield _UNKNOWN
 
     def _of_name(
-        self, node: ast.Name | ast.Attribute, items: Mapping[str, ast.expr], depth: int
+        self, node: ast.Name | ast.Attribute, items: _Expressions, depth: int
     ) -> Iterator[NamePart]:
         name = dotted(node)
         parameter = self._parameter(node)
         if name in items:
             yield from self._parts(items[name], {}, depth + 1)
-        elif parameter is not None:
+        elif parameter:
             yield self._of_parameter("parameter", parameter)
         elif name in self._known.values:
             yield from self._parts(self._known.values[name], items, depth + 1)
-        elif (loop := self._loop(name, node)) is not None:
+        elif loop := self._loop(name, node):
             yield self._make_part(loop.items)
         else:
             yield _UNKNOWN
@@ -231,7 +221,7 @@ class EndpointNames:
         """Return the part that an item of a list is: of a parameter, or not known."""
         for _ in range(_MAX_DEPTH):
             parameter = self._parameter(node)
-            if parameter is not None:
+            if parameter:
                 return self._of_parameter("item", parameter)
             if dotted(node) not in self._known.values:
                 break
@@ -244,9 +234,7 @@ class EndpointNames:
             return _UNKNOWN
         return NamePart("item" if kind == "item" else "parameter", value)
 
-    def _of_call(
-        self, node: ast.Call, items: Mapping[str, ast.expr], depth: int
-    ) -> Iterator[NamePart]:
+    def _of_call(self, node: ast.Call, items: _Expressions, depth: int) -> Iterator[NamePart]:
         match node:
             case ast.Call(func=ast.Name(id="str"), args=[inner], keywords=[]):
                 yield from self._parts(inner, items, depth + 1)
@@ -274,7 +262,7 @@ class EndpointNames:
         pattern: re.Pattern[str],
         text: str,
         given: list[ast.expr],
-        items: Mapping[str, ast.expr],
+        items: _Expressions,
         depth: int,
     ) -> Iterator[NamePart]:
         """Yield the parts of a text with places for what is given."""

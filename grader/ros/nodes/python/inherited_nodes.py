@@ -5,23 +5,22 @@ once, and replaces nothing that decides what the base does. All others keep thei
 """
 
 import ast
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
 
+from grader.base.records import Named
 from grader.base.source import Location
-from grader.ros.nodes.message_uses import given_argument
+from grader.ros.nodes.message_uses import Evaluate, given_argument
 from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.nodes.python.called_functions import list_methods
 from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
 from grader.ros.python.constants import dotted
 from grader.ros.python.parse import own_nodes
-from grader.ros.python.values import Value
 from grader.ros.python.walking import walk
 
 _MAX_DEPTH = 8  # of classes derived from each other
 
 
-class OwnClass(NamedTuple):
+class OwnClass(Named):
     """A class of a module: its syntax, the full names of its bases, and its file.
 
     `evaluate` gives the values of expressions in its constructor.
@@ -30,10 +29,13 @@ class OwnClass(NamedTuple):
     node: ast.ClassDef
     bases: Sequence[str | None]
     path: str
-    evaluate: Callable[[ast.expr], Value]
+    evaluate: Evaluate
 
 
-class _Constructor(NamedTuple):
+_Classes = Mapping[str, OwnClass]
+
+
+class _Constructor(Named):
     """The constructor of a class, and how it calls that of its base.
 
     `first` is the position of the first argument of the call behind self.
@@ -42,11 +44,11 @@ class _Constructor(NamedTuple):
     function: ast.FunctionDef
     call: ast.Call
     first: int
-    evaluate: Callable[[ast.expr], Value]
+    evaluate: Evaluate
 
 
 def with_inherited(
-    nodes: Sequence[NodeFacts], classes: Mapping[str, OwnClass], options: Sequence[str | None]
+    nodes: Sequence[NodeFacts], classes: _Classes, options: Sequence[str | None]
 ) -> list[NodeFacts]:
     """Return nodes with what their base classes of the package declare and open.
 
@@ -60,7 +62,7 @@ def with_inherited(
 def _joined(
     node: NodeFacts,
     by_name: Mapping[str, NodeFacts],
-    classes: Mapping[str, OwnClass],
+    classes: _Classes,
     options: Sequence[str | None],
 ) -> NodeFacts | None:
     """Return a node with what its base classes add; None if that is not known."""
@@ -81,8 +83,12 @@ def _joined(
 
 def _add_bases(node: NodeFacts, facts: Sequence[NodeFacts], *, is_settled: bool) -> NodeFacts:
     """Return a node with the facts of its bases; `is_settled`: no argument leaves a doubt."""
-    endpoints, parameters, timers = [*node.endpoints], [*node.parameters], [*node.timers]
-    frames, transforms, doubts = [*node.frames], [*node.transforms], [*node.doubts]
+    endpoints = list(node.endpoints)
+    parameters = list(node.parameters)
+    timers = list(node.timers)
+    frames = list(node.frames)
+    transforms = list(node.transforms)
+    doubts = list(node.doubts)
     for base in facts[1:]:
         endpoints += base.endpoints
         parameters += base.parameters
@@ -102,7 +108,7 @@ def _add_bases(node: NodeFacts, facts: Sequence[NodeFacts], *, is_settled: bool)
 
 
 def _is_any_replaced(
-    chain: Sequence[str], by_name: Mapping[str, NodeFacts], classes: Mapping[str, OwnClass]
+    chain: Sequence[str], by_name: Mapping[str, NodeFacts], classes: _Classes
 ) -> bool:
     """Return whether a class of a chain replaces what decides about one of its bases."""
     for index, derived in enumerate(chain):
@@ -114,18 +120,18 @@ def _is_any_replaced(
 
 def _list_constructors(chain: Sequence[OwnClass]) -> list[_Constructor]:
     """Return the constructors of a class and its bases; none if one may do something else."""
-    constructors: list[_Constructor] = []
+    constructors = []
     for own_class in chain:
         if "__init__" not in list_methods(own_class.node):
             continue  # that of the base is called
         constructor = _find_constructor(own_class)
-        if constructor is None:
+        if not constructor:
             return []
         constructors.append(constructor)
     return constructors
 
 
-def _base_classes(name: str, classes: Mapping[str, OwnClass]) -> list[str]:
+def _base_classes(name: str, classes: _Classes) -> list[str]:
     """Return a class and its bases in the package, if the last one is derived from rclpy's only."""
     chain: list[str] = []
     while name in classes and name not in chain and len(chain) < _MAX_DEPTH:
@@ -145,14 +151,15 @@ def _replaces(derived: OwnClass, base: OwnClass, of_base: NodeFacts) -> bool:
 
     It is an attribute that the base reads, or a method in which the base does so.
     """
-    methods, own_methods = list_methods(base.node), list_methods(derived.node)
+    methods = list_methods(base.node)
+    own_methods = list_methods(derived.node)
     lines = [at.line for at in _list_places(of_base) if at.path == base.path]
     read = _read_attributes(base.node)
     for name in _replaced_names(derived.node):
         if name in read and name not in own_methods:
             return True
         method = methods.get(name)
-        if method is not None:
+        if method:
             inside = range(method.lineno, (method.end_lineno or method.lineno) + 1)
             if any(line in inside for line in lines):
                 return True
@@ -175,7 +182,7 @@ def _list_places(node: NodeFacts) -> Iterator[Location]:
 
 def _read_attributes(node: ast.ClassDef) -> set[str]:
     """Return the attributes of self that a class names."""
-    names = set[str]()
+    names = set()
     for part in walk(node):
         if isinstance(part, ast.Attribute) and dotted(part.value) == "self":
             names.add(part.attr)
@@ -200,7 +207,7 @@ def _replaced_names(node: ast.ClassDef) -> Iterator[str]:
 def _find_constructor(own_class: OwnClass) -> _Constructor | None:
     """Return the constructor of a class that surely calls that of its base once."""
     function = list_methods(own_class.node).get("__init__")
-    if function is None or function.decorator_list:
+    if not function or function.decorator_list:
         return None
     calls = [
         node
@@ -238,10 +245,12 @@ def _passed_name(constructors: Sequence[_Constructor]) -> str | None:
 
     The constructors are those of a class and its bases, in this order.
     """
-    wanted, position, default = "node_name", 0, None
+    wanted = "node_name"
+    position = 0
+    default = None
     for constructor in reversed(constructors):
         given = given_argument(constructor.call, position + constructor.first, wanted) or default
-        value = constructor.evaluate(given) if given is not None else None
+        value = constructor.evaluate(given) if given else None
         if isinstance(value, str):
             return value
         parameters = constructor.function.args.args
@@ -250,7 +259,8 @@ def _passed_name(constructors: Sequence[_Constructor]) -> str | None:
             return None
         if any(isinstance(each, ast.Name) and each.id == given.id for each in _stored(constructor)):
             return None
-        wanted, position = given.id, names.index(given.id) - 1
+        wanted = given.id
+        position = names.index(given.id) - 1
         behind = names.index(given.id) - len(names)
         defaults = constructor.function.args.defaults
         default = defaults[behind] if -behind <= len(defaults) else None

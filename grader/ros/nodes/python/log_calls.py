@@ -1,9 +1,9 @@
 """Calls of the logger of rclpy with arguments that it does not take."""
 
 import ast
-import re
 from collections.abc import Sequence
 
+from grader.base.patterns import on_use
 from grader.ros.nodes.message_uses import CodePart, certain_nodes
 from grader.ros.nodes.node_facts import (
     CodeFault,
@@ -18,7 +18,7 @@ _OPTIONS = frozenset(
     {"throttle_duration_sec", "throttle_time_source_type", "skip_first", "once", "name"}
 )
 # What gives another meaning to get_logger.
-_IS_NO_METHOD = re.compile(
+_IS_NO_METHOD = on_use(
     r"\bget_logger\s*+(?::[^=\n]{0,100})?=(?!=)|\bdef get_logger\b"
     r"|\bimport\b[^\n]{0,200}\bget_logger\b"
 )
@@ -29,9 +29,9 @@ def wrong_log_calls(code: Code, parts: Sequence[CodePart]) -> CodeFaults:
 
     They raise a TypeError. Without its parentheses, get_logger has no such method.
     """
-    if "rclpy" not in code.source.text:
+    if "rclpy" not in code.text:
         return
-    is_other = _IS_NO_METHOD.search(code.source.text) is not None
+    is_other = _IS_NO_METHOD.search(code.text) is not None
     for part in parts:
         reasons = {call: _reason(call, is_other=is_other) for call in part.calls}
         wrong = {call: reason for call, reason in reasons.items() if reason}
@@ -48,7 +48,8 @@ def _reason(call: ast.Call, *, is_other: bool) -> str:
     """
     if not isinstance(call.func, ast.Attribute) or call.func.attr not in _LEVELS:
         return ""
-    level, logger = call.func.attr, call.func.value
+    level = call.func.attr
+    logger = call.func.value
     if last_name(logger.func if isinstance(logger, ast.Call) else logger) != "get_logger":
         return ""
     if not isinstance(logger, ast.Call):

@@ -6,14 +6,24 @@ cv_bridge converts.
 
 import ast
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
+from grader.base.grouping import StringsByName
+from grader.base.records import Named
 from grader.base.source import Location, Source
-from grader.ros.nodes.message_uses import CodePart, given_argument
-from grader.ros.nodes.node_facts import ImageEncoding, SynchronisedType
+from grader.base.text import last_part
+from grader.ros.nodes.message_uses import CodePart, FunctionKey, given_argument
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    CodeFaults,
+    EncodingsByLocation,
+    ImageEncoding,
+    ImageEncodings,
+    SynchronisedType,
+)
+from grader.ros.nodes.python.called_functions import name_fully
 from grader.ros.nodes.python.endpoint_names import Bindings
 from grader.ros.python.constants import dotted, last_name
-from grader.ros.python.parse import location_in, make_position
+from grader.ros.python.parse import Code, location_in, make_position, own_parameters
 from grader.ros.python.values import QualifiedName, Scope, Value
 from grader.ros.python.walking import walk
 
@@ -22,13 +32,14 @@ _SYNCHRONISERS = (
     "message_filters.TimeSynchronizer",
     "message_filters.ApproximateTimeSynchronizer",
 )
-_HEADERLESS_AT, _HEADERLESS = 3, "allow_headerless"
+_HEADERLESS_AT = 3
+_HEADERLESS = "allow_headerless"
 _MAX_DEPTH = 12  # of names that are bound to expressions with names
 _ANY_ENCODING = "passthrough"
 _PUBLISHES = "create_publisher"
 
 
-class _BoundFunction(NamedTuple):
+class _BoundFunction(Named):
     """A function, and what the names in it and the attributes of its class are bound to."""
 
     part: CodePart
@@ -55,7 +66,8 @@ class ContentReader:
     ) -> None:
         """`bindings_of` returns the bindings in a function, with those of its class."""
         self._functions = [_BoundFunction(part, bindings_of(part).values) for part in parts]
-        self._source, self._value_of = source, value_of
+        self._source = source
+        self._value_of = value_of
 
     def synchronised_types(self) -> Iterator[SynchronisedType]:
         """Yield the types of the messages that synchronisers get, unless these need no header."""
@@ -72,10 +84,10 @@ class ContentReader:
                     written = given_argument(made, 1, "msg_type")
                     type_name = self._value_of(written, function.part.scope)
                     if isinstance(type_name, QualifiedName):
-                        by = kind.rpartition(".")[2]
+                        by = last_part(kind)
                         yield SynchronisedType(type_name.name, by, self._at(made))
 
-    def encodings(self) -> Mapping[Location, tuple[ImageEncoding, ...]]:
+    def encodings(self) -> EncodingsByLocation:
         """Return the encodings that publishers send, and to which callbacks convert images.
 
         The keys are the places where publishers and subscriptions are made. There are none where
@@ -107,22 +119,23 @@ class ContentReader:
             return self._encoding(function, image, "encoding")
         return None
 
-    def _encodings_asked(self) -> Mapping[tuple[Location | None, str], list[ImageEncoding]]:
+    def _encodings_asked(self) -> Mapping[FunctionKey, list[ImageEncoding]]:
         """Return the encodings to which functions convert what they are given.
 
         The keys are their class and name.
         """
-        asked: dict[tuple[Location | None, str], list[ImageEncoding]] = {}
+        asked: dict[FunctionKey, list[ImageEncoding]] = {}
         for function in self._functions:
-            part, message = function.part, _first_argument(function.part)
+            part = function.part
+            message = _first_argument(function.part)
             if not message or _names_encoding(part):
                 continue
-            key = (part.of, f"self.{part.name}" if part.of is not None else part.name)
+            key = (part.of, f"self.{part.name}" if part.of else part.name)
             for call in part.calls:
                 given = given_argument(call, 0, "img_msg")
                 if last_name(call.func) == "imgmsg_to_cv2" and dotted(given or call) == message:
                     encoding = self._encoding(function, call, "desired_encoding")
-                    if encoding is not None:
+                    if encoding:
                         asked.setdefault(key, []).append(encoding)
         return asked
 
@@ -147,7 +160,7 @@ def _takes_any(call: ast.Call) -> bool:
     given = given_argument(call, _HEADERLESS_AT, _HEADERLESS)
     is_off = isinstance(given, ast.Constant) and given.value is False
     is_unpacked = any(keyword.arg is None for keyword in call.keywords)
-    return is_unpacked or not (given is None or is_off)
+    return is_unpacked or not (not given or is_off)
 
 
 def _names_encoding(part: CodePart) -> bool:
@@ -160,8 +173,7 @@ def _first_argument(part: CodePart) -> str:
     """Return the name of what a function is given, if nothing else is bound to it."""
     if isinstance(part.node, ast.Module):
         return ""
-    names = [argument.arg for argument in part.node.args.args]
-    names = names[1:] if names[:1] == ["self"] else names
+    names = own_parameters(part.node)
     for node in walk(part.node):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in names:
             return ""
@@ -170,10 +182,24 @@ def _first_argument(part: CodePart) -> str:
 
 def _all_known(
     encodings_by_place: Mapping[Location, Sequence[ImageEncoding | None]],
-) -> dict[Location, tuple[ImageEncoding, ...]]:
+) -> dict[Location, ImageEncodings]:
     """Return the encodings of the places at which all of them are known."""
     known = {}
     for at, encodings in encodings_by_place.items():
         if None not in encodings:
-            known[at] = tuple(encoding for encoding in encodings if encoding is not None)
+            known[at] = tuple(encoding for encoding in encodings if encoding)
     return known
+
+
+def silent_synchronisers(
+    code: Code, parts: Sequence[CodePart], imports: StringsByName
+) -> CodeFaults:
+    """Yield the synchronisers of a module, in a package that registers no callback of any.
+
+    `imports` has the full names of what the module imports.
+    """
+    for part in parts:
+        for call in part.calls:
+            if name_fully(call.func, imports) in _SYNCHRONISERS:
+                message = "no callback is registered with this synchroniser, so it does nothing"
+                yield CodeFault("filter-callback", message, code.at(call))

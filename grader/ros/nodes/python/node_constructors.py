@@ -50,9 +50,10 @@ def early_uses(
     `bases` are the classes that others inherit: the constructors of these may make the node.
     """
     constructor = list_methods(owner).get("__init__")
-    if constructor is None or _is_made_elsewhere(owner, constructor, bases):
+    if not constructor or _is_made_elsewhere(owner, constructor, bases):
         return
-    when, fixes = "called later", NO_FIXES
+    when = "called later"
+    fixes = NO_FIXES
     if not _initialises(constructor):
         when = "not called"
         statement = f"super().__init__({node_name})"
@@ -61,7 +62,7 @@ def early_uses(
     called = None
     for statement_before in _statements_before(constructor):
         called = called or _first_need(statement_before, owner, known)
-    if called is not None:
+    if called:
         message = (
             f"{dotted(called.func)}() needs what super().__init__() makes, which is {when}: "
             "Python raises an AttributeError; call super().__init__() first"
@@ -118,20 +119,20 @@ def _first_need(
 ) -> ast.Call | None:
     """Return the first call of a method that needs the node; also in methods that are called."""
     methods = list_methods(owner)
-    entered = set[str]()
+    entered = set()
     pending: list[ast.AST] = [statement]
     while pending:
         node = pending.pop(0)
         if isinstance(node, _UNCERTAIN):
             continue
-        pending = [*children(node), *pending]
+        pending = children(node) + pending
         if not isinstance(node, ast.Call) or not dotted(node.func).startswith("self."):
             continue
         name = dotted(node.func)[5:]
         if name in _NEED_NODE and name not in known:
             return node
         method = methods.get(name)
-        if method is not None and name not in entered and _runs_when_called(method):
+        if method and name not in entered and _runs_when_called(method):
             entered.add(name)
             pending += method.body
     return None

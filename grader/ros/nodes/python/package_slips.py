@@ -5,10 +5,10 @@ They are what its build, its launch files, or what reads its YAML refuses.
 
 import ast
 import re
-from collections.abc import Iterator
 
-from grader.base.slips import Slip
+from grader.base.slips import Slip, Slips
 from grader.base.source import Source
+from grader.base.text import blanked
 from grader.ros.config.yaml_slips import yaml_slips
 from grader.ros.installation.installation import Installation
 from grader.ros.launch.launch_slips import launch_slips, name_slips
@@ -24,16 +24,16 @@ _MAX_ENTRIES = 20  # of setup.py
 _YAML = (".yaml", ".yml", ".rviz")
 
 
-def package_slips(package: Package) -> Iterator[Slip]:
+def package_slips(package: Package) -> Slips:
     """Yield the slips in the files of a package: those of its build, of launch files, of YAML."""
     installation = package.installation
     yield from _manifest_slips(package)
-    if installation is not None:
+    if installation:
         yield from _build_slips(package, installation)
     for path in package.launch_files[:_MAX_FILES]:
         if not path.endswith((".xml", ".yaml", ".yml")):
             yield from _python_file(package, path, is_launch_file=True)
-    if installation is not None and _has_programs(installation):
+    if installation and _has_programs(installation):
         from grader.ros.nodes.python.python_nodes import (
             program_slips,  # late: many have no programs
         )
@@ -46,12 +46,12 @@ def package_slips(package: Package) -> Iterator[Slip]:
             yield from yaml_slips(data, package.path(path))
 
 
-def _manifest_slips(package: Package) -> Iterator[Slip]:
+def _manifest_slips(package: Package) -> Slips:
     """Yield the build type that stands in package.xml beside the <export> that it belongs in."""
     data = package.tree.read("package.xml", _LIMIT)
     source = Source(package.path("package.xml"), (data or b"").decode("utf-8", "replace"))
-    text = re.sub(r"(?s)<!--.*?(?:-->|\Z)", lambda match: " " * len(match[0]), source.text)
-    matches = [*re.finditer(r"<build_type>[^<>]*</build_type>", text)]
+    text = re.sub(r"(?s)<!--.*?(?:-->|\Z)", blanked, source.text)
+    matches = list(re.finditer(r"<build_type>[^<>]*</build_type>", text))
     if len(matches) == 1 and "<export" not in text:
         [match] = matches
         edit = source.edit(*match.span(), f"<export>{match[0]}</export>")
@@ -69,7 +69,7 @@ def _has_programs(installation: Installation) -> bool:
 def _programs(package: Package) -> set[str]:
     """Return the names of the programs that a build of a package installs."""
     installation = package.installation
-    if installation is None:
+    if not installation:
         return set()
     known = installation.known_programs()
     folder = f"lib/{package.name}/"
@@ -77,7 +77,7 @@ def _programs(package: Package) -> set[str]:
     return copied.union(known.listed or ())
 
 
-def _python_file(package: Package, path: str, *, is_launch_file: bool) -> Iterator[Slip]:
+def _python_file(package: Package, path: str, *, is_launch_file: bool) -> Slips:
     data = package.tree.read(path, _LIMIT)
     if data is None:
         return
@@ -92,15 +92,15 @@ def _python_file(package: Package, path: str, *, is_launch_file: bool) -> Iterat
         yield from python_slips(data, package.path(path))
 
 
-def _build_slips(package: Package, installation: Installation) -> Iterator[Slip]:
+def _build_slips(package: Package, installation: Installation) -> Slips:
     manifest = package.manifest
-    name = (manifest.name if manifest is not None else None) or ""
+    name = (manifest.name if manifest else None) or ""
     if package.is_cmake:
         if len(installation.source.text) > _LIMIT:
             return
         from grader.ros.installation.cmake.cmake_slips import cmake_slips
 
-        needed = manifest.dependencies if manifest is not None else ()
+        needed = manifest.dependencies if manifest else ()
         yield from cmake_slips(installation.source, package.tree, name, needed)
         return
     yield from _python_file(package, SETUP, is_launch_file=False)
@@ -113,7 +113,7 @@ def _build_slips(package: Package, installation: Installation) -> Iterator[Slip]
         yield from _name_slips(package, installation, code, name)
 
 
-def _absolute_slips(code: Code) -> Iterator[Slip]:
+def _absolute_slips(code: Code) -> Slips:
     """Yield the last part of a path that begins with a slash, for which join() drops the others."""
     for node in walk(code.tree):
         match node:
@@ -124,10 +124,10 @@ def _absolute_slips(code: Code) -> Iterator[Slip]:
                 yield read_as(code, last, part, part.lstrip("/"), reaction)
 
 
-def _argument_slips(installation: Installation, code: Code) -> Iterator[Slip]:
+def _argument_slips(installation: Installation, code: Code) -> Slips:
     """Yield the argument that setup() does not have, near one that it has."""
     ignored = installation.misspelt
-    if ignored is None or not ignored.meant:
+    if not ignored or not ignored.meant:
         return
     for node in walk(code.tree):
         if isinstance(node, ast.keyword) and node.arg == ignored.name:
@@ -135,20 +135,20 @@ def _argument_slips(installation: Installation, code: Code) -> Iterator[Slip]:
             yield read_as(code, node, ignored.name, ignored.meant, reaction, is_refused=False)
 
 
-def _entry_slips(package: Package, source: Source) -> Iterator[Slip]:
+def _entry_slips(package: Package, source: Source) -> Slips:
     """Yield the module or function of an entry point that is not there, where one surely is meant.
 
     It is one of nearly the same name, or the only function of the module.
     """
     for entry in entry_points(package)[:_MAX_ENTRIES]:
         fault = entry_fault(package, entry.name)
-        if fault is None or fault.meant is None or not fault.is_sure:
+        if not fault or fault.meant is None or not fault.is_sure:
             continue
         start = source.start_offset(entry.location)
         written = re.match(r"[^'\"\n]*", source.text[start:])
         places = [
             match.start()
-            for match in re.finditer(r"\w+", written[0] if written is not None else "")
+            for match in re.finditer(r"\w+", written[0] if written else "")
             if match[0] == fault.written
         ]
         if places:
@@ -159,9 +159,7 @@ def _entry_slips(package: Package, source: Source) -> Iterator[Slip]:
             yield Slip((edit,), message, assumption, entry.location, is_refused=True)
 
 
-def _name_slips(
-    package: Package, installation: Installation, code: Code, name: str
-) -> Iterator[Slip]:
+def _name_slips(package: Package, installation: Installation, code: Code, name: str) -> Slips:
     """Yield where setup.py has another name than package.xml.
 
     The files of the package have the name of package.xml.

@@ -5,23 +5,25 @@ was not read, only missing and exchanged arguments are wrong: it may have more p
 """
 
 import ast
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import combinations
-from typing import Literal, NamedTuple
+from typing import Literal
 
+from grader.base.grouping import Span, Strings, StringsByName
 from grader.base.names import near
 from grader.base.problems import Fix, Fixes
+from grader.base.records import Named
 from grader.base.source import Edit, Edits, Source
-from grader.base.text import counted, cut
+from grader.base.text import counted, cut, last_part
 from grader.ros.known.package_tables import call_signatures
-from grader.ros.known.releases import RELEASES, Release
+from grader.ros.known.releases import RELEASES, Release, Releases
 from grader.ros.python.constants import dotted
 
 ArgumentKind = Literal["text", "number", "function", "type", "node class"]
 # What is given to parameters of these names, where an argument surely is of a kind. A depth may
 # stand for a profile of quality of service.
-_KINDS: Mapping[str, ArgumentKind] = {
+_KINDS = {
     "timer_period_sec": "number",
     "callback": "function",
     "execute_callback": "function",
@@ -36,13 +38,13 @@ _KINDS: Mapping[str, ArgumentKind] = {
     "srv_type": "type",
     "action_type": "type",
 }
-_NEVER: Mapping[str, tuple[ArgumentKind, ...]] = {"qos_profile": ("text", "function", "type")}
+_NEVER = {"qos_profile": ("text", "function", "type")}
 # What certainly raises an error where it is given, and what is expected instead: rclpy/node.py,
 # publisher.py, client.py, type_support.py and action/client.py of ros2/rclpy, Humble to Rolling.
-_NO_MESSAGE: tuple[ArgumentKind, ...] = ("text", "number", "function", "type", "node class")
-_NO_NAME: tuple[ArgumentKind, ...] = ("number", "function", "type", "node class")
-_NO_TYPE: tuple[ArgumentKind, ...] = ("text", "number", "function")
-_REFUSED: Mapping[str, tuple[tuple[ArgumentKind, ...], str]] = {
+_NO_MESSAGE = ("text", "number", "function", "type", "node class")
+_NO_NAME = ("number", "function", "type", "node class")
+_NO_TYPE = ("text", "number", "function")
+_REFUSED = {
     "msg": (_NO_MESSAGE, "a message"),
     "request": (_NO_MESSAGE, "a request"),
     "goal": (_NO_MESSAGE, "a goal"),
@@ -58,7 +60,7 @@ _REFUSED: Mapping[str, tuple[tuple[ArgumentKind, ...], str]] = {
     "callback": (("text", "number"), "a function"),
     "execute_callback": (("text", "number"), "a function"),
 }
-_KIND_WORDS: Mapping[ArgumentKind, str] = {
+_KIND_WORDS = {
     "text": "a text",
     "number": "a number",
     "function": "a function",
@@ -67,13 +69,14 @@ _KIND_WORDS: Mapping[ArgumentKind, str] = {
 }
 _INSTANCES = ("msg", "request", "goal", "node")  # what an instance of a class is given to
 _SECTIONS = {"request": "Request", "goal": "Goal"}  # of a type, whose instance is given
+_PARTS = ("Request", "Response", "Goal", "Result", "Feedback")
 _MAX_SHOWN = 40  # characters of an argument
 _FILLED = {"qos_profile": "10"}  # what is assumed where an argument is missing
 _ANYTHING = "..."
-_READ: tuple[Release, ...] = ("humble", "iron", "jazzy")  # those that were read, and between them
+_READ = ("humble", "iron", "jazzy")  # those that were read, and between them
 
 
-class WrongCall(NamedTuple):
+class WrongCall(Named):
     """What is wrong with the arguments of a call, and the edits that write what is assumed.
 
     Without edits, nothing is assumed.
@@ -91,18 +94,18 @@ class WrongCall(NamedTuple):
         return Fixes(lambda: [fix] if fix.edits else [])
 
 
-class Written(NamedTuple):
+class Written(Named):
     """A call as it is written."""
 
     call: ast.Call
     source: Source
-    span_of: Callable[[ast.expr | ast.keyword], tuple[int, int]]  # the offsets of a part
+    span_of: Callable[[ast.expr | ast.keyword], Span]  # the offsets of a part
     kind_of: Callable[[ast.expr], ArgumentKind | None]  # None: of any kind
-    filled: Mapping[str, str]  # what is given to parameters where it is missing
+    filled: StringsByName  # what is given to parameters where it is missing
 
     @property
     def _arguments(self) -> list[ast.expr | ast.keyword]:
-        return [*self.call.args, *self.call.keywords]
+        return self.call.args + self.call.keywords
 
     def added(self, place: int, text: str) -> Edit:
         """Return the edit that adds an argument before the one at a place."""
@@ -134,10 +137,10 @@ class Written(NamedTuple):
         return self.source.edit(*self.span_of(part), text)
 
 
-class _Signature(NamedTuple):
+class _Signature(Named):
     """The parameters of a function, in order, and those of them that must be given."""
 
-    positional: tuple[str, ...]
+    positional: Strings
     required: frozenset[str]
     by_name: frozenset[str]  # only
     takes_more: bool  # positional or named ones
@@ -168,15 +171,15 @@ def _shown(call: ast.Call) -> str:
     if getattr(call.func, "attr", "") == "__init__":
         name = "super().__init__"
     elif not name.startswith("rclpy."):
-        name = name.rpartition(".")[2]
+        name = last_part(name)
     return f"{name}()"
 
 
 @cache
-def _signatures(function: str, releases: tuple[Release, ...]) -> tuple[_Signature, ...]:
+def _signatures(function: str, releases: Releases) -> tuple[_Signature, ...]:
     """Return the signatures of a function in some releases, each once."""
     rows = call_signatures().get(function, {})
-    signatures: dict[tuple[str, bool], _Signature] = {}
+    signatures = {}
     for release in releases if rows else ():
         earlier = [row for row in rows if RELEASES.index(row) <= RELEASES.index(release)]
         words = rows[earlier[-1] if earlier else next(iter(rows))]
@@ -192,7 +195,7 @@ def _parsed(signature: str, *, takes_more: bool) -> _Signature:
     by_name = [word for word in words[end:] if not word.startswith("*")]
     return _Signature(
         tuple(word.removesuffix("=") for word in words[:end]),
-        frozenset(word for word in (*words[:end], *by_name) if not word.endswith("=")),
+        frozenset(word for word in words[:end] + by_name if not word.endswith("=")),
         frozenset(word.removesuffix("=") for word in by_name),
         takes_more or any(words[index].strip("*") for index in stars),
     )
@@ -218,7 +221,8 @@ def _unknown_keyword(written: Written, shown: str, signature: _Signature) -> Wro
         meant = near(name, signature.names - {other.arg or "" for other in keywords})
         reaction = f"{shown} has no argument {name}"
         if meant is not None:
-            start, end = written.span_of(keyword)[0], written.span_of(keyword)[0] + len(name)
+            start = written.span_of(keyword)[0]
+            end = written.span_of(keyword)[0] + len(name)
             edit = written.source.edit(start, end, meant)
             return WrongCall(reaction, f"{name} is read as {meant}", (edit,))
         return WrongCall(reaction, f"{name} is ignored", written.without([keyword]))
@@ -226,7 +230,8 @@ def _unknown_keyword(written: Written, shown: str, signature: _Signature) -> Wro
 
 
 def _too_many(written: Written, shown: str, signature: _Signature) -> WrongCall | None:
-    arguments, most = written.call.args, len(signature.positional)
+    arguments = written.call.args
+    most = len(signature.positional)
     for keyword in written.call.keywords:
         if keyword.arg in signature.positional[: len(arguments)]:
             reaction = f"{shown} gets {keyword.arg} twice"
@@ -238,7 +243,7 @@ def _too_many(written: Written, shown: str, signature: _Signature) -> WrongCall 
     return WrongCall(reaction, "the others are ignored", written.without(arguments[most:]))
 
 
-class _Given(NamedTuple):
+class _Given(Named):
     """An argument, the parameter that it is given to, and its kind."""
 
     name: str
@@ -296,26 +301,27 @@ def _missing(written: Written, shown: str, signature: _Signature) -> WrongCall |
 
 def _refused(written: Written, shown: str, signature: _Signature) -> WrongCall | None:
     """Return the first argument that surely is of a kind that its parameter never takes."""
-    given = [*zip(signature.positional, written.call.args, strict=False)]
+    given = list(zip(signature.positional, written.call.args, strict=False))
     given += [(keyword.arg or "", keyword.value) for keyword in written.call.keywords]
     for name, argument in given:
         kinds, expected = _REFUSED.get(name, ((), ""))
         kind = written.kind_of(argument)
         if kind in kinds and kind is not None:
-            text = cut(written.source.text[slice(*written.span_of(argument))], _MAX_SHOWN)
+            start, end = written.span_of(argument)
+            full = written.source.text[start:end]
+            text = cut(full, _MAX_SHOWN)
             reaction = f"{shown} gets {_KIND_WORDS[kind]}, {text}, in place of {expected}"
-            if kind in ("type", "node class") and name in _INSTANCES:
-                reaction += _instance_in_words(text, _SECTIONS.get(name, ""))
-            return WrongCall(reaction, "", ())
+            section = _SECTIONS.get(name, "")
+            is_part = last_part(full) in _PARTS
+            is_other = is_part and not full.endswith(f".{section}")
+            if kind not in ("type", "node class") or name not in _INSTANCES or is_other:
+                return WrongCall(reaction, "", ())
+            made = "()" if not section or is_part else f".{section}()"
+            if last_part(text)[:1].isupper():  # no variable
+                reaction += f"; write {text}{made}"
+            edit = written.source.edit(end, end, made)
+            return WrongCall(reaction, f"`{text}{made}` is assumed", (edit,))
     return None
-
-
-def _instance_in_words(text: str, section: str) -> str:
-    """Return how an instance of a class is written, or of its section; empty for a variable."""
-    if not text.rpartition(".")[2][:1].isupper():
-        return ""
-    made = text if not section or text.endswith(f".{section}") else f"{text}.{section}"
-    return f"; write {made}()"
 
 
 def _place_of_missing(names: Sequence[str], kinds: Sequence[ArgumentKind | None]) -> int:

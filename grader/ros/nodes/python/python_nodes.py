@@ -7,35 +7,41 @@ What is opened under a condition is listed as well; actions and the topics of tf
 """
 
 import ast
-import re
-from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial
-from typing import NamedTuple
+from itertools import chain
+from posixpath import basename
 
-from grader.base.slips import Slip
+from grader.base.grouping import as_text, group_values, only_one
+from grader.base.patterns import on_use
+from grader.base.records import Named
+from grader.base.reuse import Answers
+from grader.base.slips import Slip, Slips
 from grader.base.source import Edits, Location
+from grader.base.text import first_part, last_part
 from grader.ros.known.python_names import MODULES, python_names
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import CodePart, field_uses, given_argument, type_imports
 from grader.ros.nodes.node_facts import (
     CodeFault,
     Doubt,
+    EncodingsByLocation,
     Endpoint,
     EndpointKind,
     FieldUse,
-    ImageEncoding,
-    NamePart,
+    NameOrParts,
+    NodeFact,
     NodeFacts,
     NodeFrame,
     NodeParameter,
     NodeProgram,
-    NodeTransform,
     PackageNodes,
     Qos,
     SynchronisedType,
     Timer,
     TypeImport,
+    make_node,
+    updater_facts,
 )
 from grader.ros.nodes.python.branches import (
     calls_caught,
@@ -64,8 +70,8 @@ from grader.ros.package.entry_points import (
 )
 from grader.ros.package.package import Package
 from grader.ros.python.bindings import names_bound
-from grader.ros.python.budget import Budget
-from grader.ros.python.constants import Constants, constant_in, dotted, make_order
+from grader.ros.python.budget import PYTHON_LIMIT, Budget
+from grader.ros.python.constants import Constants, constant_in, count_stored, dotted, make_order
 from grader.ros.python.evaluation import record
 from grader.ros.python.parse import (
     START,
@@ -75,6 +81,7 @@ from grader.ros.python.parse import (
     location_in,
     make_position,
     own_nodes,
+    parse,
 )
 from grader.ros.python.python_slips import python_slips
 from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknown, Value
@@ -101,7 +108,7 @@ _ACTIONS: dict[str, EndpointKind] = {
     "ActionServer": "action server",
 }
 _WITHOUT_NODES = ("rclpy", "tf2_ros", "message_filters", "numpy", "cv2", "cv_bridge", "yaml")
-_MESSAGE_PART = re.compile(r"\.(msg|srv|action)\.")
+_MESSAGE_PART = on_use(r"\.(msg|srv|action)\.")
 _READS_IF_DECLARED = ("get_parameter_or", "has_parameter")
 _READS = ("get_parameter", *_READS_IF_DECLARED)
 _DECLARES = ("declare_parameter", "declare_parameters")
@@ -112,6 +119,7 @@ _LOOKUPS = {
     "lookup_transform_full": 2,
     "lookup_transform_full_async": 2,
 }
+_OPENING_METHODS = frozenset({*_KINDS, *_DECLARES})
 _METHODS = frozenset({*_KINDS, *_READS, *_DECLARES, "create_timer"})
 # Makes a node in the same process by itself, for which launch gives parameters: moveit_py of
 # moveit2.
@@ -142,24 +150,35 @@ _OPTIONS = (
 )
 
 
-class _Name(NamedTuple):
+class _Name(Named):
     """The name that a node is given, and where."""
 
     name: str | None
     location: Location
 
 
-_Fact = Endpoint | NodeParameter | NodeFrame | NodeTransform | Timer | Doubt | _Name
+_TRANSFORM = "TransformStamped"
+_Fact = NodeFact | _Name
 
 
-def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
+def read_nodes(
+    package: Package, answers: Answers[Package], *, reads_meant: bool = False
+) -> PackageNodes:
     """Return the nodes in the Python modules that a build of a package installs. It never raises.
 
     With `reads_meant`, an entry point that surely is misspelt creates the nodes of the one meant.
+    `answers` are what the package says of the others in its workspace.
     """
     modules, unread = _read_modules(package)
     doubts = [Doubt("the file is not read", Location(package.path(path), 1, 1)) for path in unread]
-    nodes = _nodes_of_modules(modules, are_all=not unread)
+    every_module = _modules_with_bases(package, modules, answers)
+    every_node = _nodes_of_modules(every_module)
+    nodes = [node for node in every_node if package.holds(node.location.path)]
+    if not unread:
+        unused = unused_publishers(module.text().code for module in every_module.values())
+        # Other packages have modules that are not read here.
+        unused = {at for at in unused if package.holds(at.path)}
+        nodes = [_with_unused(node, unused) for node in nodes]
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
     searched = _search_faults(modules.values(), package.releases)
     programs = []
@@ -170,19 +189,15 @@ def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
     return _joined_nodes(searched, nodes, programs, doubts)
 
 
-def _nodes_of_modules(modules: Mapping[str, "_Module"], *, are_all: bool) -> list[NodeFacts]:
+def _nodes_of_modules(modules: Mapping[str, "_Module"]) -> list[NodeFacts]:
     """Return the nodes of modules, each with what its base classes in them do."""
     kinds = _derived_classes(modules)
-    nodes: list[NodeFacts] = []
+    nodes = []
     classes: dict[str, OwnClass] = {}
     for module in modules.values():
         nodes += module.read_nodes(kinds)
         classes |= module.own_classes()
-    nodes = with_inherited(nodes, classes, _OPTIONS)
-    if are_all:
-        unused = unused_publishers(module.text().code for module in modules.values())
-        nodes = [_with_unused(node, unused) for node in nodes]
-    return nodes
+    return with_inherited(nodes, classes, _OPTIONS)
 
 
 def _with_unused(node: NodeFacts, unused: Collection[Location]) -> NodeFacts:
@@ -212,11 +227,11 @@ def _without_stopped(
 
 def _read_modules(package: Package) -> tuple[dict[str, "_Module"], list[str]]:
     """Return the modules that a build installs, by their names, and the files that are not read."""
-    modules: dict[str, _Module] = {}
-    unread: list[str] = []
+    modules = {}
+    unread = []
     for name, path in _module_paths(package).items():
         code = read_module(package, path)
-        if code is None:
+        if not code:
             unread.append(path)
         else:
             is_package = path.endswith("/__init__.py")
@@ -224,16 +239,48 @@ def _read_modules(package: Package) -> tuple[dict[str, "_Module"], list[str]]:
     return modules, unread
 
 
+def _modules_with_bases(
+    package: Package, modules: Mapping[str, "_Module"], answers: Answers[Package]
+) -> dict[str, "_Module"]:
+    """Return modules with those of other packages of the workspace that have base classes."""
+    every = dict(modules)
+    pending = list(modules.values())
+    while pending and len(every) < _MAX_MODULES:
+        for base in chain.from_iterable(pending.pop().bases.values()):
+            name = (base or "").rpartition(".")[0]
+            file = None if name in every else answers.ask(partial(_base_module, name))
+            code = parse(*file, package.releases) if file else None
+            if isinstance(code, Code):
+                is_package = code.source.path.endswith("/__init__.py")
+                every[name] = _Module(code, name, package.work, is_package=is_package)
+                pending.append(every[name])
+    return every
+
+
+def _base_module(name: str, package: Package) -> tuple[bytes, str] | None:
+    """Return the content and the path of a module that a package of the workspace installs.
+
+    It is None if colcon does not build that package, which is ignored or in another one.
+    """
+    owner = package.packages.get(first_part(name))
+    if not owner or owner.ignored_by:
+        return None
+    others = (other for other in package.packages.values() if other is not owner)
+    path = _module_paths(owner).get(name)
+    data = owner.tree.read(path, PYTHON_LIMIT) if path else None
+    if not path or data is None or any(other.holds(owner.path("")) for other in others):
+        return None
+    return data, owner.path(path)
+
+
 def _derived_classes(modules: Mapping[str, "_Module"]) -> set[str]:
     """Return the full names of the classes of nodes, rclpy's own ones and those of modules."""
     bases: dict[str, Sequence[str | None]] = {}
     for module in modules.values():
         bases |= module.bases
-    derived: dict[str | None, list[str]] = {}  # classes by each of their bases
-    for full, own_bases in bases.items():
-        for base in own_bases:
-            derived.setdefault(base, []).append(full)
-    kinds, reached = set(NODE_CLASSES), [*NODE_CLASSES]
+    derived = group_values((base, full) for full, own_bases in bases.items() for base in own_bases)
+    kinds = set(NODE_CLASSES)
+    reached = list(NODE_CLASSES)
     while reached:
         more = [full for full in derived.get(reached.pop(), ()) if full not in kinds]
         kinds.update(more)
@@ -241,7 +288,7 @@ def _derived_classes(modules: Mapping[str, "_Module"]) -> set[str]:
     return kinds
 
 
-class _Searched(NamedTuple):
+class _Searched(Named):
     """The modules of a package, and the faults that are found in each of them, by their paths."""
 
     modules: Mapping[str, "_Module"]
@@ -284,8 +331,10 @@ def _search_faults(modules: Collection["_Module"], releases: Sequence[Release]) 
     texts = [module.text() for module in modules]
     by_name = {text.name: text for text in texts}
     attributes = attributes_in(texts)
-    by_path, faults = dict[str, _Module](), dict[str, Sequence[CodeFault]]()
-    left, is_whole = _MAX_CODE, True
+    by_path = {}
+    faults = {}
+    left = _MAX_CODE
+    is_whole = True
     for module, text in zip(modules, texts, strict=True):
         source = text.code.source
         by_path[source.path] = module
@@ -301,7 +350,7 @@ def _search_faults(modules: Collection["_Module"], releases: Sequence[Release]) 
     return _Searched(by_path, faults, is_whole)
 
 
-def program_slips(package: Package) -> Iterator[Slip]:
+def program_slips(package: Package) -> Slips:
     """Yield the slips for which a program in Python stops, or does nothing."""
     slips: dict[Edits, Slip] = {}
     modules, _ = _read_modules(package)
@@ -323,14 +372,14 @@ def _find_slips(
     module = searched.modules.get(path)
     if data is None:
         return ()
-    if module is None:
+    if not module:
         return python_slips(data, path)
     from grader.ros.nodes.python.running_code import assumed_fixes  # late: many have no programs
 
     text = module.text()
     fields = wrong_fields(text.code.source, module.field_uses, package.releases)
     faults = [*searched.faults.get(path, ()), *fields]
-    return [*assumed_fixes(text, program.function, faults)]
+    return list(assumed_fixes(text, program.function, faults))
 
 
 def _module_paths(package: Package) -> dict[str, str]:
@@ -339,17 +388,17 @@ def _module_paths(package: Package) -> dict[str, str]:
     Modules are listed by their full names, programs by their paths.
     """
     setup = package.installation
-    if setup is None:
+    if not setup:
         return {}
     files = [path for path in package.tree.files if path.endswith(".py")]
     folders = {path.rpartition("/")[0] for path in files if path.endswith("/__init__.py")}
     packages = {name.replace(".", "/") for name in setup.packages} or folders
-    modules: dict[str, str] = {}
+    modules = {}
     for path in files:
         if path.rpartition("/")[0] in packages:
             name = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
             modules[name] = path
-    rows = [*modules.items()]
+    rows = list(modules.items())
     rows += [(script.source, script.source) for script in package.python_scripts]
     return dict(rows[:_MAX_MODULES])
 
@@ -367,7 +416,7 @@ def _programs(
         by_key.setdefault(node.location, []).append(node)
         if node.class_name:
             by_key.setdefault(node.class_name, []).append(node)
-    created_by = partial(_created_by, package.budget, modules, by_key)
+    created_by = partial(_created_by, package, modules, by_key)
     may_guess = _MAX_GUESSED if reads_meant else 0
     for number, written in enumerate(entry_points(package)):
         entry = entry_as_meant(package, written) if number < may_guess else written
@@ -377,14 +426,14 @@ def _programs(
         yield program._replace(may_have_more=has_more)
     for copy in package.python_scripts:
         at = Location(package.path(copy.source), 1, 1)
-        name = copy.target.rpartition("/")[2]
+        name = basename(copy.target)
         created, has_more = created_by(copy.source, "")
         program = NodeProgram(name, created, at, copy.source, "")
         yield program._replace(may_have_more=has_more)
 
 
 def _created_by(
-    budget: Budget,
+    package: Package,
     modules: "dict[str, _Module]",
     nodes: Mapping[object, Sequence[NodeFacts]],
     module: str,
@@ -392,36 +441,42 @@ def _created_by(
 ) -> tuple[tuple[NodeFacts, ...], bool]:
     """Return the nodes that a function creates, and whether it may create others.
 
-    Those of the functions that it calls count. Classes that are not of the package may be those of
-    nodes. Without a name, the function is the module's body. None are known where too many
+    Those of the functions and classes that it calls count. Classes that are not of the package may
+    be those of nodes, those that methods call only if they are of the workspace. Without a name,
+    the function is the module's body. None are known where too many
     functions call others.
 
     `nodes` are those at a place, and those of a class by its full name.
     """
     created: dict[Location, NodeFacts] = {}
-    pending, seen, has_more = [f"{module}.{function}"], set[str](), False
+    pending = [(f"{module}.{function}", False)]
+    seen = set()
+    has_more = False
     while pending:
-        name = pending.pop(0)
+        name, is_of_class = pending.pop(0)
         owner = modules.get(name.rpartition(".")[0]) or modules.get(name)
-        has_more = has_more or (owner is None and _may_be_node_class(name))
-        if name in seen or owner is None:
+        other = package.packages.get(first_part(name))
+        is_other = other is not None and other.name != package.name
+        may_be_node = _may_be_node_class(name) and (is_other or not is_of_class)
+        has_more = has_more or (not owner and may_be_node)
+        if name in seen or not owner:
             continue
         seen.add(name)
-        calls = owner.calls_in(name.rpartition(".")[2])
-        if not budget.take_of_whole(_OF_CALL * (1 + len(calls))):
+        calls = owner.calls_in(last_part(name))
+        if not package.budget.take_of_whole(_OF_CALL * (1 + len(calls))):
             return (), True
         for called, at in calls:
             created |= {
                 node.location: node for node in (*nodes.get(at, ()), *nodes.get(called, ()))
             }
-            pending.append(called)
+            pending.append((called, name in owner.bases))
     return tuple(created.values()), has_more
 
 
 def _may_be_node_class(name: str) -> bool:
     """Return whether a full name may be that of a class of nodes of another package."""
     package, _, rest = name.partition(".")
-    last = rest.rpartition(".")[2]
+    last = last_part(rest)
     is_other = package not in python_names(MODULES, RELEASES) and package not in _WITHOUT_NODES
     return is_other and last[:1].isupper() and not _MESSAGE_PART.search(name)
 
@@ -438,14 +493,21 @@ class _Module:
     """
 
     def __init__(self, code: Code, name: str, work: Budget, *, is_package: bool) -> None:
-        self._code, self._name, self._at = code, name, code.at
+        self._code = code
+        self._name = name
+        self._at = code.at
         functions = dict.fromkeys(("rclpy.qos.QoSProfile", *_CREATES), record)
-        syntax = every_node(code.tree)
+        syntax = code.nodes
         self._constants = Constants(syntax, name, functions, work, is_package=is_package)
         # Of the classes, by full names; None for a base that is not known.
         self.bases: dict[str, list[str | None]] = {}
         self.doubts: list[Doubt] = []
-        self.has_loose_declarations = _has_alias(code.tree)
+        self.has_loose_declarations = False
+        for alias in _find_aliases(code.tree):
+            if alias.attr in _DECLARES:
+                self.has_loose_declarations = True
+            else:
+                self.doubts.append(Doubt(f"another name may call {alias.attr}", self._at(alias)))
         self._classes: dict[Location, str] = {}
         self._class_nodes: dict[Location, ast.ClassDef] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
@@ -474,11 +536,10 @@ class _Module:
 
     def _add_class(self, node: ast.ClassDef, scope: Scope) -> None:
         """Keep a class and its methods, which reach its constants as attributes of self."""
-        at, full = self._at(node), f"{self._name}.{node.name}"
+        at = self._at(node)
+        full = f"{self._name}.{node.name}"
         bases = [self._constants.evaluate_node(base, scope) for base in node.bases]
-        self.bases[full] = [
-            base.name if isinstance(base, QualifiedName) else None for base in bases
-        ]
+        self.bases[full] = [name for name in map(_full_name, bases) if name != "abc.ABC"]
         self._classes[at] = full
         self._class_nodes[at] = node
         nodes_of_class = own_nodes(node)
@@ -511,13 +572,17 @@ class _Module:
             self.doubts.append(
                 Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
             )
+        if "frame_id" in self._code.text:
+            for part in self._parts:
+                if part.of in self._facts:
+                    self._facts[part.of] += self._frames_of_messages(part)
         encodings = self._content.encodings() if self._uses("cv_bridge") else {}
         return [self._node(at, facts, encodings) for at, facts in self._facts.items()]
 
     def own_classes(self) -> dict[str, OwnClass]:
         """Return the classes of the module by their full names."""
         scopes = {part.of: part.scope for part in self._parts if part.name == "__init__"}
-        own_classes: dict[str, OwnClass] = {}
+        own_classes = {}
         for at, full in self._classes.items():
             evaluate = partial(self._value_in, scopes.get(at, Scope({})))
             own_classes[full] = OwnClass(self._class_nodes[at], self.bases[full], at.path, evaluate)
@@ -528,7 +593,7 @@ class _Module:
         calls = [(part, call) for part in self._parts for call in part.calls]
         for part, call in calls:
             if self._called(part, call) in _CREATES:
-                name = _text(self._argument(part, call, 0, "node_name"))
+                name = as_text(self._argument(part, call, 0, "node_name"))
                 self._facts[self._at(call)] = [_Name(name, self._at(call))]
         self._read_parameters_that_are_nodes(calls)
         for part, call in calls:
@@ -546,14 +611,13 @@ class _Module:
 
         A function that is given a node may give it to another one.
         """
-        functions = {part.name: part for part in self._parts if part.of is None and part.name}
-        given: list[tuple[CodePart, str, str, ast.expr]] = []
+        given = []
         for part, call in calls if self._facts else ():
             called = self._called(part, call).removeprefix(f"{self._name}.")
-            if called in functions:
-                for name, argument in _parameters_given(functions[called].node, call):
+            if called in self._functions:
+                for name, argument in _parameters_given(self._functions[called].node, call):
                     given.append((part, called, name, argument))
-        for _ in functions if given else ():
+        for _ in self._functions if given else ():
             nodes: dict[tuple[str, str], Location | None] = {}
             for part, called, name, argument in given:
                 node = self._receiver(part, argument)
@@ -569,7 +633,7 @@ class _Module:
 
     def _uses(self, module: str) -> bool:
         """Return whether the code imports another module, or something of it."""
-        return any(name.partition(".")[0] == module for name in self._constants.imported)
+        return any(first_part(name) == module for name in self._constants.imported)
 
     @cached_property
     def _content(self) -> ContentReader:
@@ -605,64 +669,45 @@ class _Module:
     def field_uses(self) -> Sequence[FieldUse]:
         """The fields that the module uses of messages, services and actions."""
         nodes = self.text().nodes
-        return [*field_uses(self._code, self._parts, self._constants.evaluate_node, nodes)]
+        return list(field_uses(self._code, self._parts, self._constants.evaluate_node, nodes))
 
     def _node(
         self,
         at: Location,
         facts: "Sequence[_Fact]",
-        encodings: Mapping[Location, tuple[ImageEncoding, ...]],
+        encodings: EncodingsByLocation,
     ) -> NodeFacts:
-        names: dict[str | None, Location] = {}
-        endpoints, parameters, frames, timers, doubts = [], [], [], [], []
-        transforms = []
-        for fact in facts:
-            match fact:
-                case _Name():
-                    names[fact.name] = fact.location
-                case Endpoint():
-                    known = encodings.get(fact.location, ())
-                    endpoints.append(fact._replace(encodings=known))
-                case NodeParameter():
-                    parameters.append(fact)
-                case NodeFrame():
-                    frames.append(fact)
-                case NodeTransform():
-                    transforms.append(fact)
-                case Timer():
-                    timers.append(fact)
-                case Doubt():
-                    doubts.append(fact)
+        names = {fact.name: fact.location for fact in facts if isinstance(fact, _Name)}
         name, named_at = next(iter(names.items())) if len(names) == 1 else (None, None)
-        return NodeFacts(
-            class_name=self._classes.get(at, ""),
-            name=name,
-            location=at,
-            endpoints=tuple(endpoints),
-            parameters=tuple(parameters),
-            timers=tuple(timers),
-            doubts=tuple(doubts),
-            frames=tuple(frames),
-            transforms=tuple(transforms),
-            named_at=named_at,
-        )
+        node = make_node(facts, encodings, self._classes.get(at, ""), name, at)
+        return node._replace(named_at=named_at)
 
     def calls_in(self, function: str) -> Sequence[tuple[str, Location]]:
         """Return the full name and place of each call in a function of the module, or its body."""
         return self._calls_by_function.get(function, ())
 
     @cached_property
+    def _functions(self) -> Mapping[str, CodePart]:
+        """The functions of the module by their names."""
+        return {part.name: part for part in self._parts if not part.of and part.name}
+
+    @cached_property
     def _calls_by_function(self) -> Mapping[str, Sequence[tuple[str, Location]]]:
         calls: dict[str, list[tuple[str, Location]]] = {}
-        functions = {part.name: part for part in self._parts if part.of is None and part.name}
+        constructing = set()
         for part in self._parts:
-            if part.of is not None:
+            for call in part.calls if part.name == "__init__" else ():
+                constructing.add((part.of, dotted(call.func).removeprefix("self.")))
+        for part in self._parts:
+            # A class is called, and with it its constructor, and what that calls.
+            if part.of and part.name != "__init__" and (part.of, part.name) not in constructing:
                 continue
-            of_part = calls.setdefault(part.name, [])
+            name = last_part(self._classes[part.of]) if part.of else part.name
+            of_part = calls.setdefault(name, [])
             for call in part.calls:
                 called = self._called(part, call)
-                helper = functions.get(called.removeprefix(f"{self._name}."))
-                made = self._made_by(helper, part, call) if helper is not None else ()
+                helper = self._functions.get(called.removeprefix(f"{self._name}."))
+                made = self._made_by(helper, part, call) if helper else ()
                 of_part += [(name, self._at(call)) for name in (called, *made)]
         return calls
 
@@ -682,7 +727,7 @@ class _Module:
             for target, items, body in loops_over_tuples(part.node):
                 bound = self._bindings_around(part).values.get(dotted(items), items)
                 values = self._constants.evaluate_node(bound, part.scope)
-                parts = [*_bind_rounds(part, target, values)][:_MAX_ROUNDS]
+                parts = list(_bind_rounds(part, target, values))[:_MAX_ROUNDS]
                 if parts:
                     rounds |= dict.fromkeys(_find_calls(body), parts)
         return rounds
@@ -702,7 +747,7 @@ class _Module:
         if any(isinstance(argument, ast.Starred) for argument in call.args[: position + 1]):
             return Unknown("it is unpacked", make_position(call))
         given = given_argument(call, position, name)
-        if given is None and any(keyword.arg is None for keyword in call.keywords):
+        if not given and any(keyword.arg is None for keyword in call.keywords):
             return Unknown("it is unpacked", make_position(call))
         return self._constants.evaluate_node(given, part.scope)
 
@@ -731,18 +776,16 @@ class _Module:
 
     def _names(
         self, part: CodePart, call: ast.Call, position: int, name: str
-    ) -> Iterator[tuple[str | None, tuple[NamePart, ...]]]:
+    ) -> Iterator[NameOrParts]:
         """Yield each name that an argument of a call is, as its text or its parts."""
         value = self._argument(part, call, position, name)
         given = given_argument(call, position, name)
-        if isinstance(value, str) or given is None:
-            yield _text(value), ()
+        if isinstance(value, str) or not given:
+            yield as_text(value), ()
         else:
             yield from self._names_written(part, given)
 
-    def _names_written(
-        self, part: CodePart, given: ast.expr
-    ) -> Iterator[tuple[str | None, tuple[NamePart, ...]]]:
+    def _names_written(self, part: CodePart, given: ast.expr) -> Iterator[NameOrParts]:
         """Yield each name that an expression is, as its text or its parts."""
         names = EndpointNames(self._bindings_around(part), partial(self._value_in, part.scope))
         for parts in names.read(given):
@@ -757,7 +800,7 @@ class _Module:
 
     def _bindings_in(self, of: Location | None) -> Bindings:
         """Return what the attributes of self in a class are bound to once."""
-        if of is None:
+        if not of:
             return Bindings({}, {})
         return self._find_bindings(self._class_nodes[of])
 
@@ -777,7 +820,7 @@ class _Module:
         at: Location | None = None
         if isinstance(value, Call) and value.name in _CREATES:
             at = location_in(self._code.source, value.at)
-        elif part.of is None:
+        elif not part.of:
             at = self._given_nodes.get((part.name, name))
         return at if at in self._facts else None
 
@@ -816,7 +859,7 @@ class _Module:
         self, at: Location | None, part: CodePart, call: ast.Call, method: str
     ) -> None:
         """Add what the call of a method declares or opens to the facts of the node at a place."""
-        facts = self._facts.get(at) if at is not None else None
+        facts = self._facts.get(at) if at else None
         if facts is not None:
             facts += self._read_method(part, call, method)
             return
@@ -826,19 +869,33 @@ class _Module:
 
     def _read_given_nodes(self, part: CodePart, call: ast.Call, function: str) -> None:
         """Add what a call makes of the nodes that it is given."""
-        name = function.rpartition(".")[2]
+        name = last_part(function)
         arguments = [*call.args, *(keyword.value for keyword in call.keywords)]
-        called = self._called(part, call).removeprefix(f"{self._name}.")
+        made = self._called(part, call)
+        called = made.removeprefix(f"{self._name}.")
         for argument in arguments:
-            at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
-            if at is None or at in self._nodes_given_to(called):
+            at = None
+            if isinstance(argument, ast.Name):
+                at = self._receiver(part, argument)
+                if not at and first_part(made) != first_part(self._name):
+                    at = self._made_in(part, argument.id)
+            if not at or at in self._nodes_given_to(called):
                 continue
-            if self._called(part, call) == SUBSCRIBER:
+            if made == SUBSCRIBER:
                 self._facts[at] += self._filtered(part, call)
+            elif made == "diagnostic_updater.Updater":
+                self._facts[at] += updater_facts(self._at(call))
             elif name in _ACTIONS:
                 self._facts[at] += self._action(part, call, _ACTIONS[name])
             elif name not in HARMLESS:
                 self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
+
+    def _made_in(self, part: CodePart, variable: str) -> Location | None:
+        """Return the class of nodes of which a variable is an object."""
+        made = self._bindings_around(part).values.get(variable)
+        full = self._called(part, made) if isinstance(made, ast.Call) else ""
+        places = [at for at, name in self._classes.items() if name == full]
+        return only_one(self._facts.keys() & places)
 
     def _nodes_given_to(self, function: str) -> Collection[Location | None]:
         """Return the nodes that a function of the module is given by all of its calls."""
@@ -847,13 +904,29 @@ class _Module:
     def _is_buffer(self, part: CodePart, node: ast.expr) -> bool:
         """Return whether an expression is a buffer of tf2."""
         made = self._bindings_around(part).values.get(dotted(node))
-        return isinstance(made, ast.Call) and dotted(made.func).rpartition(".")[2] == "Buffer"
+        return isinstance(made, ast.Call) and last_part(dotted(made.func)) == "Buffer"
+
+    def _frames_of_messages(self, part: CodePart) -> Iterator[NodeFrame]:
+        """Yield the frames of messages that are not transforms, where they are no plain texts.
+
+        Those that are plain texts are among the fields that code uses.
+        """
+        made = self._bindings_around(part).values
+        for node in walk(part.node):
+            match node:
+                case ast.Assign(targets=[ast.Attribute(attr="frame_id") as target], value=value):
+                    name = dotted(target).removesuffix(".frame_id").removesuffix(".header")
+                    kind = made.get(name)
+                    if isinstance(kind, ast.Call) and not dotted(kind.func).endswith(_TRANSFORM):
+                        for _, parts in self._names_written(part, value):
+                            if parts:
+                                yield NodeFrame("names", None, self._at(value), parts)
 
     def _looked_up(self, part: CodePart, call: ast.Call, second: int) -> Iterator[NodeFrame]:
         """Yield the frames between which a call looks up the transform."""
         for position, name in ((0, "target_frame"), (second, "source_frame")):
             given = given_argument(call, position, name)
-            at = self._at(given if given is not None else call)
+            at = self._at(given or call)
             for text, parts in self._names(part, call, position, name):
                 yield NodeFrame("looks up", text, at, parts, lookup=self._at(call))
 
@@ -863,26 +936,26 @@ class _Module:
         qos = self._constants.evaluate_node(
             given_argument(call, len(call.args), "qos_profile"), part.scope
         )
-        type_name = made.name if isinstance(made, QualifiedName) else None
+        type_name = _full_name(made)
         quality = _qos(qos if qos is not None else _DEPTH_OF_FILTERS)
         endpoint = Endpoint("subscription", type_name, None, self._at(call), quality)
         yield from self._endpoints(part, call, 2, "topic", endpoint)
 
     def _action(self, part: CodePart, call: ast.Call, kind: EndpointKind) -> Iterator[Endpoint]:
         made = self._argument(part, call, 1, "action_type")
-        type_name = made.name if isinstance(made, QualifiedName) else None
+        type_name = _full_name(made)
         endpoint = Endpoint(kind, type_name, None, self._at(call))
         yield from self._endpoints(part, call, 2, "action_name", endpoint)
 
     def _read_init(self, part: CodePart, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
         """Yield the name that a class gives its node, if its base is rclpy's Node itself."""
-        assert part.of is not None
+        assert part.of
         is_super = isinstance(owner, ast.Call) and dotted(owner.func) == "super"
         base = self._constants.evaluate_node(owner, part.scope)
         is_base = isinstance(base, QualifiedName) and base.name in NODE_CLASSES
         if (is_super or is_base) and NODE_CLASSES.intersection(self.bases[self._classes[part.of]]):
             position = 0 if is_super else 1
-            name = _text(self._argument(part, call, position, "node_name"))
+            name = as_text(self._argument(part, call, position, "node_name"))
             written = given_argument(call, position, "node_name")
             if name is None and isinstance(written, ast.Name):
                 name = self._constructor_text(part, self._classes[part.of], written.id)
@@ -898,25 +971,27 @@ class _Module:
         It is None where calls give several, or where the constructor binds the name again.
         """
         assert isinstance(part.node, AnyFunction)
-        parameters = [*part.node.args.posonlyargs, *part.node.args.args]
-        names, defaults = [each.arg for each in parameters], part.node.args.defaults
+        parameters = part.node.args.posonlyargs + part.node.args.args
+        names = [each.arg for each in parameters]
+        defaults = part.node.args.defaults
         if name not in names or name in names_bound(walk(ast.Module(part.node.body, []))):
             return None
         position = names.index(name)
-        default = ([None] * (len(names) - len(defaults)) + [*defaults])[position]
-        texts = set[str | None]()
+        default = ([None] * (len(names) - len(defaults)) + list(defaults))[position]
+        texts = set()
         for caller in self._parts:
             for call in caller.calls:
                 if self._called(caller, call) == owner:
                     given = self._argument(caller, call, position - 1, name)
                     if given is None:
                         given = self._constants.evaluate_node(default, part.scope)
-                    texts.add(_text(given))
-        return texts.pop() if len(texts) == 1 else None
+                    texts.add(as_text(given))
+        return only_one(texts)
 
     def _read_method(self, part: CodePart, call: ast.Call, method: str) -> "Iterator[_Fact]":
         """Yield what a method of a node declares, opens or reads."""
-        at, argument = self._at(call), partial(self._argument, part, call)
+        at = self._at(call)
+        argument = partial(self._argument, part, call)
         if method in _KINDS:
             kind = _KINDS[method]
             is_topic = kind in ("publisher", "subscription")
@@ -924,7 +999,7 @@ class _Module:
             qos = None
             if is_topic:
                 qos = argument(2 if kind == "publisher" else 3, "qos_profile")
-            type_name = made.name if isinstance(made, QualifiedName) else None
+            type_name = _full_name(made)
             endpoint = Endpoint(kind, type_name, None, at, _qos(qos))
             name = "topic" if is_topic else "srv_name"
             yield from self._endpoints(part, call, 1, name, endpoint)
@@ -943,7 +1018,7 @@ class _Module:
         default = argument(1, "value") if is_declared else None
         is_plain = argument(2, "descriptor") is None
         return NodeParameter(
-            _text(argument(0, "name")),
+            as_text(argument(0, "name")),
             _default(default),
             self._at(call),
             is_declared,
@@ -960,18 +1035,13 @@ def _parameters_given(function: ast.AST, call: ast.Call) -> Iterator[tuple[str, 
     A parameter that is bound again, or that an inner function has as well, is not among them.
     """
     assert isinstance(function, AnyFunction)
-    bound: Counter[str] = Counter()
-    for node in walk(function):
-        if isinstance(node, ast.arg):
-            bound[node.arg] += 1
-        elif isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
-            bound[node.id] += 1
+    bound = count_stored(walk(function))
     arguments = function.args
-    positional = [*arguments.posonlyargs, *arguments.args]
-    for position, parameter in enumerate([*positional, *arguments.kwonlyargs]):
+    positional = arguments.posonlyargs + arguments.args
+    for position, parameter in enumerate(positional + arguments.kwonlyargs):
         behind = position if position < len(positional) else len(call.args)
         given = given_argument(call, behind, parameter.arg)
-        if given is not None and bound[parameter.arg] == 1:
+        if given and bound[parameter.arg] == 1:
             yield parameter.arg, given
 
 
@@ -985,24 +1055,21 @@ def _bind_rounds(part: CodePart, target: ast.Tuple, values: Value) -> Iterator[C
             yield part._replace(scope=Scope(bound, part.scope))
 
 
-def _has_alias(tree: ast.Module) -> bool:
-    """Return whether a method that declares parameters is named and not called.
-
-    Another name may then call it.
-    """
+def _find_aliases(tree: ast.Module) -> Iterator[ast.Attribute]:
+    """Yield where methods of a node are named and not called: another name may then call them."""
     called = {node.func for node in every_node(tree) if isinstance(node, ast.Call)}
-    return any(
-        isinstance(node, ast.Attribute) and node.attr in _DECLARES and node not in called
-        for node in every_node(tree)
-    )
+    for node in every_node(tree):
+        match node:
+            case ast.Attribute(attr=name) if name in _OPENING_METHODS and node not in called:
+                yield node
 
 
 def _find_bindings(node: ast.AST) -> Bindings:
     return bindings(walk(node), of_self=isinstance(node, ast.ClassDef))
 
 
-def _text(value: Value) -> str | None:
-    return value if isinstance(value, str) else None
+def _full_name(value: Value) -> str | None:
+    return value.name if isinstance(value, QualifiedName) else None
 
 
 def _default(value: Value) -> Value:
@@ -1037,9 +1104,7 @@ def _qos(value: Value) -> Qos:
         case int():
             return Qos(value, "reliable", "volatile")
         case QualifiedName(name=name) if name.startswith("rclpy.qos."):
-            profile = (
-                name.removesuffix(".value").rpartition(".")[2].lower().removeprefix("qos_profile_")
-            )
+            profile = last_part(name.removesuffix(".value")).lower().removeprefix("qos_profile_")
             return Qos(*_PROFILES.get(profile, ()))
         case Call(name="rclpy.qos.QoSProfile", kwargs=given):
             depth = given.get("depth") if "history" not in given else None
@@ -1060,7 +1125,7 @@ def _policy(value: Value) -> str | None:
     """
     if not isinstance(value, QualifiedName):
         return None
-    name = value.name.rpartition(".")[2].lower()
+    name = last_part(value.name).lower()
     for policy, group in _GROUPS.items():
         if name in (policy, f"rmw_qos_policy_{group}_{policy}"):
             return policy

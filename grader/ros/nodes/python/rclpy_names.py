@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from grader.base.text import first_part
 from grader.ros.known.python_names import MODULES, python_names
 from grader.ros.known.releases import RELEASES
 
@@ -16,12 +17,13 @@ NODE_CLASSES = frozenset(
     }
 )
 # What is given a callback, with the position and the name of that argument: rclpy/node.py and
-# rclpy/action/server.py.
+# rclpy/action/server.py, message_filters/__init__.py.
 CALLBACKS: Mapping[str, tuple[int, str]] = {
     "create_timer": (1, "callback"),
     "create_subscription": (2, "callback"),
     "create_service": (2, "callback"),
     "ActionServer": (3, "execute_callback"),
+    "registerCallback": (0, "cb"),
 }
 # What may be given a node, and declares and opens nothing but actions and the topics of tf2.
 HARMLESS = frozenset(
@@ -43,5 +45,5 @@ _MESSAGES = ("_msgs", "_interfaces", "_srvs", "_actions")
 
 def is_passive(module: str) -> bool:
     """Return whether a module surely neither initialises rclpy nor spins a node."""
-    top = module.partition(".")[0]
+    top = first_part(module)
     return top in _PASSIVE or top in python_names(MODULES, RELEASES) or top.endswith(_MESSAGES)

@@ -5,11 +5,12 @@ nodes and their callbacks, without what is under a condition or caught, or behin
 """
 
 import ast
-import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
 
-from grader.base.slips import Slip
+from grader.base.grouping import distinct
+from grader.base.patterns import on_use
+from grader.base.records import Named
+from grader.base.slips import Slip, Slips
 from grader.base.source import Edit, Location
 from grader.ros.nodes.message_uses import given_argument, suppresses
 from grader.ros.nodes.node_facts import CodeFault
@@ -18,20 +19,20 @@ from grader.ros.nodes.python.called_functions import list_methods
 from grader.ros.nodes.python.code_faults import ModuleText
 from grader.ros.nodes.python.rclpy_names import CALLBACKS
 from grader.ros.python.constants import binds_unseen, dotted
-from grader.ros.python.parse import Position, every_node, location_in, make_position
+from grader.ros.python.parse import Position, location_in, make_position, name_position
 from grader.ros.python.walking import children, walk
 
-_NEW_LINE = re.compile(r"\n[ \t]*")
+_NEW_LINE = on_use(r"\n[ \t]*")
 
 
-def assumed_fixes(module: ModuleText, function: str, faults: Iterable[CodeFault]) -> Iterator[Slip]:
+def assumed_fixes(module: ModuleText, function: str, faults: Iterable[CodeFault]) -> Slips:
     """Yield the fixes of faults in the module of a program that a grade assumes, by their lines.
 
     They are those of what is certainly wrong in what the program certainly runs. `function` is the
     one that it calls; it is empty for a script, which runs its body as __main__.
     """
     code = module.code
-    if binds_unseen(every_node(code.tree)):
+    if binds_unseen(code.nodes):
         return
     places = _RunningCode(module, function).read()
     certain = [fault for fault in faults if fault.is_certain and fault.location in places]
@@ -39,11 +40,11 @@ def assumed_fixes(module: ModuleText, function: str, faults: Iterable[CodeFault]
     for fault in sorted(certain, key=lambda fault: (fault.location.line, fault.location.column)):
         # A name that is written more than once is one mistake.
         key = (fault.message, None if fault.rule == "name-binding" else fault.location)
-        for fix in [*fault.fixes][:1]:
+        for fix in list(fault.fixes)[:1]:
             first = slips.get(key)
-            edits = (*(first.edits if first is not None else ()), *map(_in_one_line, fix.edits))
-            at = first.location if first is not None else fault.location
-            edits = tuple(dict.fromkeys(edits))
+            edits = (*(first.edits if first else ()), *map(_in_one_line, fix.edits))
+            at = first.location if first else fault.location
+            edits = distinct(edits)
             slips[key] = Slip(edits, fault.message, fix.assumption, at, is_refused=True)
     yield from slips.values()
 
@@ -54,7 +55,7 @@ def _in_one_line(edit: Edit) -> Edit:
     return edit._replace(new=_NEW_LINE.sub("; ", edit.new)) if is_statement else edit
 
 
-class _Function(NamedTuple):
+class _Function(Named):
     """A function that certainly runs, with the node's class that it is a method of."""
 
     node: ast.FunctionDef
@@ -65,7 +66,8 @@ class _RunningCode:
     """The search for the code that a program certainly runs."""
 
     def __init__(self, module: ModuleText, function: str) -> None:
-        self._code, self._function = module.code, function
+        self._code = module.code
+        self._function = function
         body = module.code.tree.body
         self._functions = {node.name: node for node in body if isinstance(node, ast.FunctionDef)}
         self._classes = {node.name: node for node in module.nodes.values() if len(node.bases) == 1}
@@ -83,7 +85,7 @@ class _RunningCode:
             self._pending.append(_Function(self._functions[self._function]))
         if "main" in self._functions:
             self._keep(make_position(self._functions["main"]))
-        seen = set[ast.FunctionDef]()
+        seen = set()
         while self._pending:
             function = self._pending.pop(0)
             if function.node not in seen:
@@ -134,20 +136,20 @@ class _RunningCode:
 
     def _evaluate(self, statement: ast.AST, owner: ast.ClassDef | None) -> list[str]:
         """Keep the parts of a statement that are certainly evaluated; return what they call."""
-        called, pending = list[str](), [statement]
+        called = []
+        pending = [statement]
         while pending:
             part = pending.pop()
             match part:
                 case ast.IfExp() | ast.BoolOp() | ast.Lambda() | ast.comprehension():
                     continue
                 case ast.AnnAssign(target=target, value=value):
-                    pending += [target, *([value] if value is not None else [])]
+                    pending += [target, *([value] if value else [])]
                     continue
                 case ast.Name() | ast.Import() | ast.ImportFrom():
                     self._keep(make_position(part))
-                case ast.Attribute(attr=name):
-                    end = (part.end_col_offset or 0) - len(name) + 1
-                    self._keep(Position(part.end_lineno or part.lineno, end))
+                case ast.Attribute():
+                    self._keep(name_position(part))
                 case ast.Call():
                     self._keep(make_position(part))
                     called.append(dotted(part.func))
@@ -161,12 +163,12 @@ class _RunningCode:
         if name in self._functions:
             yield _Function(self._functions[name])
         node_class = self._classes.get(name)
-        if node_class is not None and "__init__" in list_methods(node_class):
+        if node_class and "__init__" in list_methods(node_class):
             yield _Function(list_methods(node_class)["__init__"], node_class)
-        methods = list_methods(owner) if owner is not None else {}
+        methods = list_methods(owner) if owner else {}
         argument = CALLBACKS.get(name.removeprefix("self."))
         given = given_argument(call, *argument) if argument is not None else None
-        for named in (name, dotted(given) if given is not None else ""):
+        for named in (name, dotted(given) if given else ""):
             if named.startswith("self.") and named[5:] in methods:
                 yield _Function(methods[named[5:]], owner)
 

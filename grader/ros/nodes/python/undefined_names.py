@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Sequence
 from grader.base.names import near
 from grader.base.problems import NO_FIXES, Fixes
 from grader.base.source import Source
+from grader.base.text import first_part
 from grader.ros.interfaces.interface_types import Interface
 from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.package_tables import INTERFACE_KINDS, interface_table, python_table
@@ -57,17 +58,19 @@ def undefined_names(code: Code) -> CodeFaults:
         # Instead of those of the Python that runs it.
         builtIns = set[str]()  # noqa: N815, RUF012
 
-    nodes = every_node(code.tree)
+    nodes = code.nodes
     if binds_unseen(nodes):
         return
     try:
-        names = {*python_names("builtins", code.releases), *_ELSEWHERE}
+        names = python_names("builtins", code.releases) | _ELSEWHERE
         checker = ReleaseChecker(code.tree, builtins=names)
     except RecursionError:
         return
-    unevaluated, bound = _unevaluated(code.tree), names_bound(nodes)
+    unevaluated = _unevaluated(code.tree)
+    bound = names_bound(nodes)
     for message in sorted(checker.messages, key=lambda fault: (fault.lineno, fault.col)):
-        at, kind = Position(message.lineno, message.col + 1), type(message).__name__
+        at = Position(message.lineno, message.col + 1)
+        kind = type(message).__name__
         if kind in _CERTAIN and at not in unevaluated:
             fixes = NO_FIXES
             if kind == "UndefinedName":
@@ -78,7 +81,8 @@ def undefined_names(code: Code) -> CodeFaults:
 
 def _define(code: Code, name: str, at: Position, bound: Collection[str]) -> Fixes:
     """Return the fix that imports a name, or writes the one that surely is meant."""
-    edits, module = CodeEdits(code.source), _IMPORTED.get(name) or _module_of_message(name)
+    edits = CodeEdits(code.source)
+    module = _IMPORTED.get(name) or _module_of_message(name)
     if module or name in _MODULES:
         statement = f"from {module} import {name}" if module else f"import {name}"
         for first in code.tree.body:
@@ -108,7 +112,7 @@ def _module_of_message(name: str) -> str:
 
 def _unevaluated(tree: ast.Module) -> set[Position]:
     """Return the places in annotations, which Python does not always evaluate."""
-    places = set[Position]()
+    places = set()
     for node in every_node(tree):
         annotation = getattr(node, "annotation", None) or getattr(node, "returns", None)
         for part in walk(annotation) if annotation is not None else ():
@@ -132,7 +136,7 @@ def wrong_imports(code: Code, own_modules: Collection[str]) -> CodeFaults:
                 imports = [(module, [alias.name for alias in names])]
         for module, imported in imports:
             message, meant = _why_wrong(module, imported)
-            if message and module.partition(".")[0] not in own_modules:
+            if message and first_part(module) not in own_modules:
                 fixes = CodeEdits(code.source).rewrite_in(statement, module, meant)
                 yield CodeFault("name-binding", message, code.at(statement), fixes=fixes)
                 return
@@ -141,7 +145,7 @@ def wrong_imports(code: Code, own_modules: Collection[str]) -> CodeFaults:
 def _why_wrong(module: str, names: Sequence[str]) -> tuple[str, str]:
     """Return why an import fails, and the module that is meant; empty for one that may not."""
     package, _, section = module.partition(".")
-    if section.partition(".")[0] in INTERFACE_KINDS:
+    if first_part(section) in INTERFACE_KINDS:
         return "", ""
     for kind, known in (interface_table(package) or {}).items():
         for name in names:
@@ -166,7 +170,7 @@ def wrong_fields(
 
     for use in uses:
         used = resolve_field(use, find)
-        if used is None or not used.is_absent:
+        if not used or not used.is_absent:
             continue
         meant = used.find_meant(find, is_sure=True)
         if meant is not None:
@@ -177,13 +181,42 @@ def wrong_fields(
 
 
 def wrong_objects(source: Source, uses: Iterable[FieldUse]) -> CodeFaults:
-    """Yield the objects of rclpy that code uses in place of their values."""
+    """Yield the objects of rclpy that code uses in place of their values, or that lack a name."""
+    edits = CodeEdits(source)
     for use in uses:
-        if use.instead is None:
+        if not use.instead:
             continue
         name, lacks, end = use.instead
         is_field = not use.type.startswith("rclpy.")
+        if not lacks:
+            yield from _wrong_member(source, use, name)
+            continue
         where = f"the field {use.path[-1]} gets" if is_field else "Python cannot compute with"
         message = f"{where} a {name} of rclpy: write {lacks} behind it"
-        fixes = CodeEdits(source).insert(source.start_offset(end), lacks, f"`{lacks}` is added")
+        fixes = edits.insert(source.start_offset(end), lacks, f"`{lacks}` is added")
         yield CodeFault("value-object", message, use.location, fixes=fixes)
+
+
+def _wrong_member(source: Source, use: FieldUse, name: str) -> CodeFaults:
+    """Yield that an object of rclpy has no attribute of a name, or is computed with a field."""
+    written = use.path[-1]
+    members = python_table().members[name]
+    shown = name.removeprefix("Rcutils")
+    if written in members:
+        message = (
+            "an rclpy Time cannot be combined with this: use Time.from_msg() for a stamp and "
+            "Duration(seconds=...) for a number"
+        )
+        yield CodeFault("value-object", message, use.location)
+        return
+    meant = near(written, members)
+    if meant is not None:
+        start = source.start_offset(use.location)
+        fixes = CodeEdits(source).rewrite(start, start + len(written), meant)
+        message = f"a {shown} of rclpy has no attribute {written}; did you mean {meant}?"
+        yield CodeFault("name-binding", message, use.location, fixes=fixes)
+    elif shown == name:  # what has more attributes in no release
+        message = f"a {shown} of rclpy has no attribute {written}"
+        if written in ("sec", "nanosec"):
+            message = f"{message}: write .to_msg() before it"
+        yield CodeFault("name-binding", message, use.location)

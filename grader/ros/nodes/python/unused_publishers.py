@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from grader.base.source import Location
 from grader.ros.python.constants import binds_unseen, dotted, last_name
-from grader.ros.python.parse import AnyFunction, Code, every_node
+from grader.ros.python.parse import AnyFunction, Code
 from grader.ros.python.walking import walk
 
 _OPENING = ("create_publisher", "create_lifecycle_publisher")
@@ -17,9 +17,9 @@ def unused_publishers(modules: Iterable[Code]) -> set[Location]:
     Such a publisher is not kept, or it is kept in an attribute or variable that no code reads. One
     whose name is a text may be asked for by getattr().
     """
-    codes = [*modules]
-    nodes = [node for code in codes for node in every_node(code.tree)]
-    if binds_unseen(nodes):
+    codes = list(modules)
+    nodes = [node for code in codes for node in code.nodes]
+    if binds_unseen(nodes) or any(map(_asks_computed, nodes)):
         return set()
     read = _read_names(nodes)
     if "publishers" in read:  # those of a node, all of them
@@ -29,7 +29,7 @@ def unused_publishers(modules: Iterable[Code]) -> set[Location]:
 
 def _read_names(nodes: Iterable[ast.AST]) -> set[str]:
     """Return the attributes that code reads, and the texts in it."""
-    read: set[str] = set()
+    read = set()
     for node in nodes:
         match node:
             case ast.Attribute(attr=name, ctx=ast.Load() | ast.Del()):
@@ -38,12 +38,22 @@ def _read_names(nodes: Iterable[ast.AST]) -> set[str]:
                 read.add(name)
             case ast.Constant(value=str(name)):
                 read.add(name)
+            case ast.MatchClass(kwd_attrs=names):
+                read.update(names)
     return read
+
+
+def _asks_computed(node: ast.AST) -> bool:
+    """Return whether code asks a node for an attribute by a name that it computes."""
+    match node:
+        case ast.Call(func=ast.Name(id="getattr"), args=[ast.Name(id="self" | "node"), name, *_]):
+            return not isinstance(name, ast.Constant)
+    return False
 
 
 def _unused_in(code: Code, read: set[str]) -> Iterator[Location]:
     """Yield where a module opens them; `read` are the attributes that the package reads."""
-    for function in every_node(code.tree):
+    for function in code.nodes:
         if not isinstance(function, AnyFunction):
             continue
         inside = walk(function)
@@ -57,7 +67,7 @@ def _unused_in(code: Code, read: set[str]) -> Iterator[Location]:
                 variables.update(node.names)
         for statement in inside:
             call = _opened_by(statement, read, variables)
-            if call is not None:
+            if call:
                 yield code.at(call)
 
 

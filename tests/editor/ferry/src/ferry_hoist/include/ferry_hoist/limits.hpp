@@ -1,0 +1,2 @@
+#pragma once
+constexpr double MAX_MASS = 40.0;
