@@ -139,20 +139,21 @@ def slow_texts(pattern: _Recorded) -> Iterator[tuple[float, float, str]]:
 def _power(
     pattern: "re.Pattern[Any]", use: str, texts: tuple[str, ...]
 ) -> tuple[float, float] | None:
-    """Return the power with which the time grows, if it is too large, and the time of the longest text that was tried."""
-    before = 0.0
+    """Return the power with which the time grows at the longest text that is tried, and its time, if the power is too large.
+
+    Below that length a pattern with `.{0,600}` grows with the square, until its bound is reached.
+    """
+    before = power = seconds = 0.0
     for text in texts:
         data = text.encode("latin-1", "replace") if isinstance(pattern.pattern, bytes) else text
         seconds = _time(pattern, use, data)
         if seconds >= SLOW:
             seconds = min(seconds, *(_time(pattern, use, data) for _ in range(REPEATS)))
-            power = log(max(seconds, 1e-6) / max(before, 1e-6)) / log(FACTOR)
-            if seconds >= SLOW and power > LIMIT:
-                return power, seconds
+        power = log(max(seconds, 1e-6) / max(before, 1e-6)) / log(FACTOR)
         if seconds > ENOUGH:
-            return None
+            break
         before = seconds
-    return None
+    return (power, seconds) if seconds >= SLOW and power > LIMIT else None
 
 
 def _time(pattern: "re.Pattern[Any]", use: str, text: Any) -> float:
