@@ -101,14 +101,14 @@ _EXACT = 1e-6
 # What keeps launch files from starting, and nodes from their parameters.
 _STOPPING = ("files names_agree", "arguments names_agree", "programs names_agree")
 _OF_PARAMETERS = (*_STOPPING, "controllers names_agree", "parameters names_agree")
-_OF_NAMING = (*_OF_PARAMETERS, "frames names_agree", "values names_agree")
-_OF_CODE = ("code names_agree", "interfaces names_agree")
-_OF_CONNECTIONS = (
-    *_OF_NAMING,
-    "topics names_agree",
-    "services names_agree",
+_OF_NAMING = (
+    *_OF_PARAMETERS,
+    "frames names_agree",
+    "values names_agree",
     "transforms names_agree",
 )
+_OF_CODE = ("code names_agree", "interfaces names_agree")
+_OF_CONNECTIONS = (*_OF_NAMING, "topics names_agree", "services names_agree")
 _OF_WAYS = (*_OF_PARAMETERS, "topics names_agree")  # of messages, unless the robot opens ends
 # What of the nodes of a lab is seen from outside, by what they open.
 _OPENING = {
