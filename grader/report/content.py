@@ -26,6 +26,7 @@ from grader.lab.checks.loading import urdf_loads
 from grader.lab.checks.manual import answered, picture_name, picture_named
 from grader.lab.grading.report import EvidenceResult, Report, Result, sum_points
 from grader.lab.rubric.criterion import worth
+from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
 from grader.report.criteria import (
     Answer,
     Entry,
@@ -630,7 +631,6 @@ def next_command(report: Report, sections: ReportSections) -> str:
     first = next(iter(failed + report.pending_automatic), None)
     if not first:
         return ""
-    command = f"grader explain {first.id}"
-    if not report.rubric.is_copy_of_shipped:
-        command += f" --rubric {shell_quoted(report.rubric.path)}"
-    return command
+    named = report.rubric.id if report.rubric.is_copy_of_shipped else report.rubric.path
+    option = "" if named == DEFAULT_RUBRIC else f" --rubric {shell_quoted(named)}"
+    return f"grader explain {first.id}{option}"
