@@ -63,7 +63,7 @@ def test_sample_mistakes_get_hints_that_lead_to_full_marks() -> None:
             "program-misspelt",
             "config-not-installed",
         ),
-        *("remapping-forgotten", "interface-of-position"),
+        *("remapping-forgotten", "interface-of-position", "wheels-exchanged"),
     }
     of_several_numbers = {"rover/base-on-the-ground"}  # of any height that the rubric leaves open
     of_diffdrive = {f"diffdrive/{name}" for name in of_names}

@@ -53,10 +53,6 @@ class Lines:
         """Return the character offset of a line and column."""
         return self._source.offset(line, column)
 
-    def text_before(self, line: int, column: int) -> str:
-        """Return the text before a place."""
-        return self._source.text[: self.offset(line, column)]
-
 
 class TextRanges:
     """Ranges in the files of a look."""

@@ -177,7 +177,7 @@ def _why_no_number(text: str) -> str:
             _COMMA, text
         ),
         "contains a comma: separate numbers by spaces": "," in text,
-        "is xacro, which ROS 2 does not evaluate in a .urdf file": "$" in text,
+        "is xacro, which ROS 2 does not evaluate": "$" in text,
         "contains a tab or a line break: separate numbers by plain spaces": not set(
             "\t\n\v\f\r"
         ).isdisjoint(text),

@@ -29,6 +29,7 @@ from grader.workspace.model.workspace import Workspace
 
 _SENDING = ("sendTransform", "TFMessage")
 _SIMULATORS = ("gazebo_ros", "gazebo_plugins")  # whose plug-ins publish what their elements say
+_MANAGING = ("ros2_control_node", "spawner")  # whose controllers are nodes of their own
 _PUBLISHING = ("tf2_ros", "robot_state_publisher")  # also as components
 
 
@@ -99,7 +100,7 @@ def unread_transforms(
     launch = workspace.launches.outermost[number]
     yield from graph.unread
     for transform in transforms_in(workspace, number, without):
-        if not (transform.parent and transform.child):
+        if not (transform.parent and transform.child) and transform.by not in _MANAGING:
             yield Unread(f"a frame of {transform.by} is not known", transform.location)
     own_programs = set()
     read_at = {node.location for node in launch.nodes if not node.is_component}
@@ -116,10 +117,7 @@ def unread_transforms(
             yield Unread(reason, node.location)
     for graph_node in graph.nodes:
         is_own = graph_node.program in own_programs or graph_node.kind == "container"
-        is_read = graph_node.location in read_at
-        if not is_own and (
-            _may_publish_others(graph_node) or not (is_read or _is_still(graph_node))
-        ):
+        if not is_own and _may_publish(graph_node, is_read=graph_node.location in read_at):
             reason = f"which transforms {graph_node.program} publishes is not known"
             yield Unread(reason, graph_node.location)
 
@@ -142,24 +140,22 @@ def _why_own_is_unread(workspace: Workspace, node: StartedNode) -> str:
     return ""
 
 
-def _is_still(node: GraphNode) -> bool:
-    """Return whether a node that no Node of the launch file starts publishes no transform."""
+def _may_publish(node: GraphNode, *, is_read: bool) -> bool:
+    """Return whether a node of another package may publish transforms that are not known.
+
+    What a Node of the launch file says of its own is read.
+    """
+    if node.kind == "controller":
+        return bool(node.opens_more)
     package, _, program = node.program.rpartition("/")
-    row = package_row(package or program)
+    package = package or program
+    row = package_row(package)
+    is_open = "frames" not in row.without
+    if package in _SIMULATORS or (is_open and not opened_ends(package, program)):
+        return True
     if node.kind == "component":
         programs = row.program.values()
         publishes = package in _PUBLISHING or any(each.transforms for each in programs)
     else:
         publishes = bool(find_transforms(node.program))
-    return node.kind == "controller" or ("frames" in row.without and not publishes)
-
-
-def _may_publish_others(node: GraphNode) -> bool:
-    """Return whether a node of another package may publish transforms that are not known."""
-    package, _, program = node.program.rpartition("/")
-    package = package or program
-    if package in _SIMULATORS:
-        return True
-    if node.kind == "controller":
-        return bool(node.opens_more)
-    return "frames" not in package_row(package).without and not opened_ends(package, program)
+    return not is_read and (is_open or publishes)

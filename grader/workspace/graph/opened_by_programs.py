@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase
+from operator import eq, ne
 from typing import Any
 
 from grader.base.source import Location
@@ -94,7 +95,7 @@ def _find_type(end: VaryingEnd, parameter: str, given: NodeParameters) -> str:
 
 def _doubt_of_conditions(end: VaryingEnd, given: NodeParameters) -> str | None:
     """Return why it is not certain that an end is opened; None if it certainly is not."""
-    for conditions, holds in ((end.only, _is_given), (end.unless, _is_not_given)):
+    for conditions, holds in ((end.only, eq), (end.unless, ne)):
         for name, value in conditions.items():
             doubt = _doubt_of_condition(given, name, value, holds)
             if doubt is None or doubt:
@@ -114,11 +115,3 @@ def _doubt_of_condition(
     if isinstance(row.value, Unknown):
         return row.value.reason
     return "" if holds(row.value, value) else None
-
-
-def _is_given(given: Any, value: Any) -> bool:
-    return bool(given == value)
-
-
-def _is_not_given(given: Any, value: Any) -> bool:
-    return bool(given != value)

@@ -3,7 +3,7 @@
 They are what `ros2 run tf2_tools view_frames` would show.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -161,16 +161,21 @@ def _broadcast_by_controllers(workspace: Workspace, launch: int) -> Iterator[Gra
     """Yield the transforms of the controllers that a launch file spawns."""
     spawned = spawned_controllers(workspace, launch)
     for controller in defined_controllers(workspace):
-        if controller.name not in spawned or spawned[controller.name]:
-            continue  # a remapping may be of /tf
+        if controller.name not in spawned:
+            continue
+        kind = controller.type.text or ""
         gifts = workspace.parameters.owners.get(controller.name, [])
-        if len(gifts) == 1:
-            for parent, child in _broadcast(controller.type.text or "", gifts[0]):
-                by = controller.name
-                at = controller.location
-                edge = GraphTransform(parent, child, "controller", True, by, at)
-                named = [row.location for row in gifts[0].values.values() if row.value == child]
-                yield edge._replace(named_at=next(iter(named), None))
+        frames: Iterable[tuple[str, str]] = [("", "")] * len(find_transforms(kind))
+        if len(gifts) == 1 and not spawned[controller.name]:  # a remapping may be of /tf
+            frames = _broadcast(kind, gifts[0])
+        for parent, child in frames:
+            by = controller.name
+            at = controller.location
+            edge = GraphTransform(parent, child, "controller", bool(child), by, at)
+            named = [
+                row.location for gift in gifts for row in gift.values.values() if row.value == child
+            ]
+            yield edge._replace(named_at=next(iter(named), None))
 
 
 def _broadcast_by_gazebo(workspace: Workspace, bridge: StartedNode) -> Iterator[GraphTransform]:
@@ -221,6 +226,7 @@ def _broadcast(kind: str, given: NodeParameters) -> Iterator[tuple[str, str]]:
         parts = [row.on, row.parent, row.child, *row.if_equal]
         values = [_value(given, part) for part in parts]
         if given.unknown or None in values:
+            yield "", ""
             continue
         on, parent, child, *equal = values
         if on != row.on.off and len({*equal}) < 2:

@@ -47,7 +47,7 @@ class WorkspaceFolder(Record):
 
     @property
     def is_spent(self) -> bool:
-        """Whether more is left to read and compare than a workspace may ask for."""
+        """Whether a workspace may ask for no more names to be compared."""
         return self._work.is_spent
 
     def charge(self, parts: int) -> None:

@@ -47,7 +47,6 @@ _PACKAGE = on_use(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
 _MAX_TAG = 80  # characters of a tag and the spaces behind it
 _LAUNCH_FOLDER = "launch/"
 _PROPERTY = on_use(r"<xacro:property\b[^<>]*?\bname\s*=\s*[\"'](\w+)[\"']")
-# Files of text that are read, which no download leaves out for their size; and programs.
 _URI = on_use(r"package://([\w-]+)/([\w./-]+)")  # of a whole text
 _PATH = on_use(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 

@@ -314,11 +314,11 @@ def _refused(written: Written, shown: str, signature: _Signature) -> WrongCall |
             section = _SECTIONS.get(name, "")
             is_part = last_part(full) in _PARTS
             is_other = is_part and not full.endswith(f".{section}")
+            is_other = is_other or last_part(full)[:1].islower()  # a variable, made elsewhere
             if kind not in ("type", "node class") or name not in _INSTANCES or is_other:
                 return WrongCall(reaction, "", ())
             made = "()" if not section or is_part else f".{section}()"
-            if last_part(text)[:1].isupper():  # no variable
-                reaction += f"; write {text}{made}"
+            reaction += f"; write {text}{made}"
             edit = written.source.edit(end, end, made)
             return WrongCall(reaction, f"`{text}{made}` is assumed", (edit,))
     return None
