@@ -144,7 +144,8 @@ def _stops_at(package: Package, files: Sequence[str], kind: FileKind | None) -> 
     kinds = _kinds_by_folder(package)
     for path in paths:
         folder = dirname(path)
-        if folder in folders or (_kind_by_ending(path) or kinds.get(folder)) == kind:
+        is_listed = folder in folders or path.rstrip("/") in folders
+        if is_listed or (_kind_by_ending(path) or kinds.get(folder)) == kind:
             return True
     return False
 
