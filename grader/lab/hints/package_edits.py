@@ -290,7 +290,9 @@ def _missing_in_words(file: PythonFile, offset: int, new: str) -> str:
             name = node.arg if isinstance(node, ast.keyword) else file.segment(node.func)
             if start < offset < end and name:
                 around = name
-    return f"a missing part of `{around}`" if around else "a missing line"
+    if around:
+        return f"a missing part of `{around}`"
+    return "a missing line" if "\n" in new else "a missing word or sign"
 
 
 def _other_values(source: Source, wanted: str) -> Proposals:

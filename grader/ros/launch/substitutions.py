@@ -357,10 +357,11 @@ def check_program(package: str, name: str, context: Context) -> None:
     if not is_there:
         others = enumerated(find_programs(package)) or "none"
         manifest = context.machine.open_installed(f"share/{package}/package.xml")
-        listed = "console_scripts of setup.py, and install_scripts of setup.cfg"
+        where = f" in lib/{package}"
         if manifest is not None and _OF_CMAKE in manifest[0]:
-            listed = "install(PROGRAMS ...) and install(TARGETS ...) in CMakeLists.txt"
-        where = f" in lib/{package}: see {listed}"
+            where += ": see install(PROGRAMS ...) and install(TARGETS ...) in CMakeLists.txt"
+        elif manifest is not None:
+            where += ": see console_scripts of setup.py, and install_scripts of setup.cfg"
         known = f"; it has {others}" if package_row(package).is_installed else where
         raise EvaluationFails(f"the package {package!r} has no program {name!r}{known}")
 
