@@ -18,6 +18,7 @@ from grader.workspace.graph.launch_graph import (
     LaunchGraph,
     Unread,
 )
+from grader.workspace.graph.started_controllers import spawned_by
 from grader.workspace.graph.transform_edges import (
     edges_in,
     frames_of_system,
@@ -99,8 +100,9 @@ def unread_transforms(
     """
     launch = workspace.launches.outermost[number]
     yield from graph.unread
+    managing = _MANAGING if spawned_by(launch).is_known else ()
     for transform in transforms_in(workspace, number, without):
-        if not (transform.parent and transform.child) and transform.by not in _MANAGING:
+        if not (transform.parent and transform.child) and transform.by not in managing:
             yield Unread(f"a frame of {transform.by} is not known", transform.location)
     own_programs = set()
     read_at = {node.location for node in launch.nodes if not node.is_component}
@@ -145,11 +147,11 @@ def _may_publish(node: GraphNode, *, is_read: bool) -> bool:
 
     What a Node of the launch file says of its own is read.
     """
-    if node.kind == "controller":
-        return bool(node.opens_more)
     package, _, program = node.program.rpartition("/")
     package = package or program
     row = package_row(package)
+    if node.kind == "controller":
+        return bool(node.opens_more or row.publishes_transforms)
     is_open = "frames" not in row.without
     if package in _SIMULATORS or (is_open and not opened_ends(package, program)):
         return True

@@ -166,12 +166,15 @@ def _broadcast_by_controllers(workspace: Workspace, launch: int) -> Iterator[Gra
         kind = controller.type.text or ""
         gifts = workspace.parameters.owners.get(controller.name, [])
         frames: Iterable[tuple[str, str]] = [("", "")] * len(find_transforms(kind))
-        if len(gifts) == 1 and not spawned[controller.name]:  # a remapping may be of /tf
+        # A remapping may be of /tf; a namespace or a prefix is part of the frames.
+        is_plain = not spawned[controller.name]
+        is_plain = is_plain and [gift.node.namespace for gift in gifts] == ["/"]
+        if is_plain and "tf_frame_prefix" not in gifts[0].values:
             frames = _broadcast(kind, gifts[0])
         for parent, child in frames:
-            by = controller.name
-            at = controller.location
-            edge = GraphTransform(parent, child, "controller", bool(child), by, at)
+            edge = GraphTransform(
+                parent, child, "controller", bool(child), controller.name, controller.location
+            )
             named = [
                 row.location for gift in gifts for row in gift.values.values() if row.value == child
             ]
