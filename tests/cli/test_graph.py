@@ -118,7 +118,7 @@ def test_a_node_in_a_namespace_is_named_without_it(workspace: Path) -> None:
 
 
 def test_what_connects_and_all_of_it(workspace: Path) -> None:
-    """An end without another one is left out, or stands in its node; --verbose says all."""
+    """An end without another one is omitted, or stands in its node; --verbose says all."""
     talker = "Node(package='demo', executable='talker', parameters=[{'topic': 'x'}])"
     heard = "Node(package='demo', executable='talker', name='b', remappings=[('answer', 'x')])"
     turtle = "Node(package='turtlesim', executable='turtlesim_node', parameters=[{'a': 1}])"

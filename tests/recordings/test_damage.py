@@ -30,7 +30,7 @@ VARIANTS = 200  # of each file
 
 
 def damaged(name: str, seed: int) -> bytes:
-    """Return a file with some bytes changed, left out or doubled, or without its end."""
+    """Return a file with some bytes changed, missing or doubled, or without its end."""
     dice = random.Random(f"{name} {seed}")
     data = bytearray(FILES[name])
     for _ in range(dice.choice((1, 2, 10))):

@@ -20,7 +20,7 @@ def may_have_sets(source: Source) -> bool:
 def parameter_sets(source: Source) -> Iterator[tuple[str, Location]]:
     """Yield the sets in the lists of parameters of a launch file, as written, with their places.
 
-    Those of one item are left out.
+    Those of one item are omitted.
 
     launch_ros takes what is no dictionary for the path of a file (normalize_parameters.py): a set
     of one text may be meant so.
